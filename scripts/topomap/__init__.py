@@ -1,0 +1,20 @@
+"""topomap: exact topological map-building in answer set programming.
+
+The theory is in ``encodings/``; this package makes experiences, calls the solver,
+reads answers and compares counts.
+
+==================  =====================================================
+``topology``        maps: gateways, links, paths, faces, genus
+``environment``     worlds to explore: grids, tori, mazes, lattices
+``network``         worlds read from street and corridor networks
+``route``           explorations of a world: snake, letters, walk, tour
+``experience``      what an exploration shows; instance files
+``generate``        one record from which name, header and facts come
+``solver``          clingo on the encodings: enumeration, optimal maps
+``statistics``      the figures of the search tree, by horizons
+``figure4``         the paper's table beside ours
+``cli``             the command ``topomap``
+==================  =====================================================
+"""
+
+__version__ = "0.1.0"

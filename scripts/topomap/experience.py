@@ -1,0 +1,207 @@
+"""Experiences: what an exploration does and sees, and the instance files that hold it.
+
+An instance file is data: ground facts ``slots/1``, ``view/2``, ``turn/2`` and
+``landmark/2`` (see ``encodings/topomap.lp``), and comments. Anything else is refused.
+"""
+
+import re
+from collections import defaultdict
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import clingo
+
+from topomap.errors import InputError
+from topomap.topology import Gateway, Place, TopologicalMap
+
+DState = tuple[int, int]
+ARITY = {"slots": 1, "view": 2, "turn": 2, "landmark": 2}
+
+
+@dataclass(frozen=True)
+class Experience:
+    """An exploration of ``len(turns)`` steps (semantics: "Experience").
+
+    ``views[t]`` and ``landmarks[t]``, t = 0..n, are what is seen after step t: slots
+    clockwise from the gateway stood at, and landmarks as terms; ``turns[t - 1]`` is
+    the turn of step t, in slots clockwise.
+    """
+
+    slots: int
+    views: tuple[frozenset[int], ...]
+    turns: tuple[int, ...]
+    landmarks: tuple[frozenset[str], ...]
+
+    @property
+    def steps(self) -> int:
+        return len(self.turns)
+
+    def cut(self, horizon: int) -> "Experience":
+        """The experience up to and including step ``horizon``."""
+        return Experience(
+            self.slots,
+            self.views[: horizon + 1],
+            self.turns[:horizon],
+            self.landmarks[: horizon + 1],
+        )
+
+    def facts(self) -> str:
+        """The experience as facts, one line a step."""
+        lines = [f"slots({self.slots})."]
+        for step, (view, landmarks) in enumerate(zip(self.views, self.landmarks, strict=True)):
+            line = [f"turn({step},{self.turns[step - 1]})."] if step else []
+            line += [f"view({step},{slot})." for slot in sorted(view)]
+            line += [f"landmark({step},{term})." for term in sorted(landmarks)]
+            lines.append(" ".join(line))
+        return "\n".join(lines) + "\n"
+
+    def map_of(self, at: tuple[DState, ...]) -> TopologicalMap:
+        """The map of a hypothesis, given the dstate after each step (``at/3``)."""
+        stars = {place: self.views[place] for place, _ in at}
+        links: dict[Gateway, Gateway] = {}
+        for turn, (place, slot), arrival in zip(self.turns, at, at[1:], strict=False):
+            out = place, (slot + turn) % self.slots
+            links[out], links[arrival] = arrival, out
+        landmarks = {place: self.landmarks[place] for place in stars}
+        return TopologicalMap(self.slots, stars, links, landmarks)
+
+
+def explore(
+    world: TopologicalMap, start: Gateway, route: Iterable[int]
+) -> tuple[Experience, tuple[DState, ...]]:
+    """What is seen from ``start`` (the gateway stood at) along ``route``, the absolute
+    slots by which places are left; and the true hypothesis, as ``at/3`` would name it."""
+    dstates = [start]
+    turns = []
+    for slot in route:
+        place, stood_at = dstates[-1]
+        turns.append((slot - stood_at) % world.slots)
+        dstates.append(world.links[place, slot])
+    first: dict[Place, tuple[int, int]] = {}
+    for step, (place, slot) in enumerate(dstates):
+        first.setdefault(place, (step, slot))
+    truth = [
+        (first[place][0], (slot - first[place][1]) % world.slots) for place, slot in dstates
+    ]
+    views = tuple(world.view(dstate) for dstate in dstates)
+    landmarks = tuple(world.landmarks.get(place, frozenset()) for place, _ in dstates)
+    return Experience(world.slots, views, tuple(turns), landmarks), tuple(truth)
+
+
+def read(path: str | Path) -> Experience:
+    """The experience in an instance file. Raises InputError, one line, on bad input."""
+    try:
+        text = Path(path).read_text(encoding="utf-8")
+    except OSError as error:
+        raise InputError(f"{path}: {(error.strerror or str(error)).lower()}") from None
+    except ValueError:
+        raise InputError(f"{path}: not a text file") from None
+    return parse(text, str(path))
+
+
+def parse(text: str, source: str) -> Experience:
+    """The experience in the text of an instance; ``source`` names it in errors."""
+    slots: set[int] = set()
+    views: dict[int, set[int]] = defaultdict(set)
+    turns: dict[int, set[int]] = defaultdict(set)
+    landmarks: dict[int, set[str]] = defaultdict(set)
+    for line, fact in _facts(text, source):
+        name, arguments = fact.name, fact.arguments
+        if not fact.positive or ARITY.get(name) != len(arguments):
+            known = ", ".join(f"{known}/{arity}" for known, arity in ARITY.items())
+            raise InputError(f"{source}:{line}: {fact} is not a fact over {known}")
+        numbers = arguments[:1] if name == "landmark" else arguments
+        if any(argument.type != clingo.SymbolType.Number for argument in numbers):
+            raise InputError(f"{source}:{line}: {fact}: a step or a slot is a whole number")
+        if name == "slots":
+            slots.add(arguments[0].number)
+        elif name == "landmark":
+            landmarks[arguments[0].number].add(str(arguments[1]))
+        else:
+            (views if name == "view" else turns)[arguments[0].number].add(arguments[1].number)
+    return _checked(source, slots, views, turns, landmarks)
+
+
+def _checked(
+    source: str,
+    slots: set[int],
+    views: dict[int, set[int]],
+    turns: dict[int, set[int]],
+    landmarks: dict[int, set[str]],
+) -> Experience:
+    """The experience, if the facts make one."""
+    if not slots and not views and not turns:
+        raise InputError(f"{source}: no facts in it")
+    if len(slots) != 1:
+        raise InputError(f"{source}: {len(slots) or 'no'} facts slots(K); there must be one")
+    (number,) = slots
+    if number < 2 or number % 2:
+        raise InputError(f"{source}: slots({number}): K must be even and at least 2")
+    last = max([0, *turns])
+    for step in sorted({*views, *turns, *landmarks}):
+        if step < 0 or step > last:
+            raise InputError(f"{source}: step {step}: it has no turn (the last one is {last})")
+    for step in range(last + 1):
+        if step and step not in turns:
+            raise InputError(f"{source}: step {step}: no turn, but there are later steps")
+        if step in turns and step == 0:
+            raise InputError(f"{source}: step 0: a turn; steps with a turn begin at 1")
+        if len(turns.get(step, ())) > 1:
+            raise InputError(f"{source}: step {step}: more than one turn")
+        if step not in views:
+            raise InputError(f"{source}: step {step}: no view")
+        for slot in [*views[step], *turns.get(step, ())]:
+            if not 0 <= slot < number:
+                raise InputError(f"{source}: step {step}: slot {slot} is not in 0..{number - 1}")
+        if 0 not in views[step]:
+            raise InputError(f"{source}: step {step}: the view lacks slot 0, the gateway stood at")
+        for turn in turns.get(step, ()):
+            if turn not in views[step - 1]:
+                raise InputError(
+                    f"{source}: step {step}: turn {turn} is to no gateway seen after step {step - 1}"
+                )
+    return Experience(
+        number,
+        tuple(frozenset(views[step]) for step in range(last + 1)),
+        tuple(next(iter(turns[step])) for step in range(1, last + 1)),
+        tuple(frozenset(landmarks.get(step, ())) for step in range(last + 1)),
+    )
+
+
+# A comment, an interval's two stops, a string, a full stop, or other text.
+_TOKEN = re.compile(r'%\*.*?\*%|%[^\n]*|\.\.|"(?:[^"\\\n]|\\.)*"|\.|[^%".]+|"', re.DOTALL)
+_FACT = re.compile(r"-?[a-z]\w*\(.*\)", re.DOTALL)
+
+
+def _facts(text: str, source: str) -> Iterator[tuple[int, clingo.Symbol]]:
+    """The ground facts of a text, each with the line it begins in."""
+    fact: list[str] = []
+    line = begins = 1
+    for token in _TOKEN.findall(text):
+        if token == ".":
+            yield begins, _fact("".join(fact).strip(), source, begins)
+            fact = []
+        elif not token.startswith("%") and (fact or token.strip()):
+            if not fact:
+                begins = line + token[: -len(token.lstrip())].count("\n")
+            fact.append(token)
+        line += token.count("\n")
+    if fact:
+        rest = _short("".join(fact))
+        raise InputError(f"{source}:{begins}: {rest} does not end with a full stop")
+
+
+def _fact(text: str, source: str, line: int) -> clingo.Symbol:
+    refused = InputError(f"{source}:{line}: {_short(text)} is not a ground fact")
+    if not _FACT.fullmatch(text):
+        raise refused
+    try:
+        return clingo.parse_term(text, logger=lambda *_: None)
+    except RuntimeError:
+        raise refused from None
+
+
+def _short(text: str) -> str:
+    line = " ".join(text.split())
+    return repr(line if len(line) <= 40 else line[:37] + "...")

@@ -1,0 +1,82 @@
+"""The paper's table (Figure 4) beside ours."""
+
+import json
+import multiprocessing
+import signal
+import time
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+from topomap.experience import read
+from topomap.solver import Query, Watch
+from topomap.statistics import KEYS, tree
+
+INSTANCES = Path(__file__).resolve().parents[2] / "instances"
+COLUMNS: list[dict[str, Any]] = json.loads(
+    Path(__file__).with_name("figure4.json").read_text(encoding="utf-8")
+)["columns"]
+WORDS = {
+    "nodes": "Search-tree nodes built",
+    "maps": "Maps built",
+    "final": "Final maps (all)",
+    "closed": "Final maps (closed: no path untravelled)",
+    "closed_text": "  (closed: no gateway pending)",
+    "optimal": "Optimal final maps",
+    "perpendicular": "Closed and perpendicular maps",
+}
+
+
+def row(column: dict[str, Any]) -> dict[str, Any]:
+    """Count one column: an environment, with or without planarity."""
+    begun = time.perf_counter()
+    query = Query(frozenset(["planar"] if column["planarity"] else []), column["places"])
+    figures: dict[str, Any] = {}
+    tree(read(INSTANCES / f"{column['instance']}.lp"), query, Watch(quiet=True), figures)
+    return {
+        "environment": column["environment"],
+        "planarity": column["planarity"],
+        **figures,
+        "paper": column["paper"],
+        "expected": column["expected"],
+        "seconds": round(time.perf_counter() - begun, 2),
+    }
+
+
+def rows(jobs: int | None = None) -> Iterator[dict[str, Any]]:
+    """The rows of the table, each as soon as it is counted; the largest begin first."""
+    context = multiprocessing.get_context("spawn")
+    with context.Pool(jobs, signal.signal, (signal.SIGINT, signal.SIG_IGN)) as pool:
+        yield from pool.imap_unordered(row, reversed(COLUMNS))
+
+
+def differences(row: dict[str, Any]) -> list[str]:
+    """The cells in which a row differs from the paper or from what is expected."""
+    where = f"{row['environment']} {'with' if row['planarity'] else 'without'} planarity"
+    return [
+        f"{where}: {key} is {row[key]}, {source} has {figure}"
+        for source in ("paper", "expected")
+        for key, figure in row[source].items()
+        if row[key] != figure
+    ]
+
+
+def text(rows: list[dict[str, Any]]) -> str:
+    """The table to read: for each figure ours, and below it the paper's."""
+    rows = sorted(rows, key=lambda row: (row["environment"], row["planarity"]))
+    head = [""] + [row["environment"] for row in rows]
+    lines = [head, ["planarity"] + ["yes" if row["planarity"] else "no" for row in rows]]
+    for key in KEYS:
+        lines.append([WORDS[key]] + [f"{row[key]:,}" for row in rows])
+        paper = [row["paper"].get(key) for row in rows]
+        if any(figure is not None for figure in paper):
+            lines.append(["    paper"] + ["" if f is None else f"{f:,}" for f in paper])
+    lines.append(["seconds"] + [f"{row['seconds']:.1f}" for row in rows])
+    widths = [max(map(len, cells)) for cells in zip(*lines, strict=True)]
+    return "\n".join(
+        "  ".join(
+            [line[0].ljust(widths[0])]
+            + [cell.rjust(width) for cell, width in zip(line[1:], widths[1:], strict=True)]
+        ).rstrip()
+        for line in lines
+    )

@@ -1,0 +1,115 @@
+"""Worlds from street or corridor networks in GraphML, as OSMnx writes and networkx reads.
+
+Read: directed or undirected (multi)graphs with node attributes x, y (projected, or
+longitude and latitude) or lon, lat. A pair of opposite one-way edges is one way; loops
+are left out; a way is the straight line between its ends.
+"""
+
+import io
+import math
+from collections import Counter
+from pathlib import Path
+from xml.etree.ElementTree import ParseError
+
+import networkx as nx
+
+from topomap.environment import Environment, by_bearing, flat_bearing
+from topomap.errors import InputError
+from topomap.topology import Place
+
+Point = tuple[float, float]
+
+
+def load(file: str | Path, slots: int, north: float) -> tuple[Environment, list[str]]:
+    """The world in a GraphML file, and warnings. Raises InputError on bad input."""
+    graph = _read(file)
+    loops = list(nx.selfloop_edges(graph))
+    graph.remove_edges_from(loops)
+    lone = list(nx.isolates(graph))
+    warnings = [
+        f"{file}: left out {len(things)} {what}"
+        for things, what in ((loops, "loops"), (lone, "places without a way"))
+        if things
+    ]
+    ways = _ways(graph)
+    if not ways:
+        raise InputError(f"{file}: no ways in it")
+    points = {place: _point(file, graph, place) for way in ways for place in way}
+    unprojected = _unprojected(graph, points)
+
+    def bearing(here: Place, there: Place) -> float:
+        (x, y), (to_x, to_y) = points[here], points[there]
+        if (x, y) == (to_x, to_y):
+            raise InputError(f"places {here} and {there} are at one point")
+        if unprojected:
+            to_x = x + ((to_x - x + 180) % 360 - 180) * math.cos(math.radians((y + to_y) / 2))
+        return flat_bearing((x, y), (to_x, to_y))
+
+    try:
+        world = by_bearing(ways, bearing, slots, north)
+    except InputError as error:
+        raise InputError(f"{file}: {error}") from None
+    path = Path(file)
+    call = "network", path.name, "--slots", str(slots), "--north", f"{north:g}"
+    notes = (f"slot 0 at {north:g} degrees clockwise of north", *_provenance(graph))
+    return Environment(path.stem, call, world, notes=notes), warnings
+
+
+def _read(file: str | Path) -> nx.Graph:
+    try:
+        data = Path(file).read_bytes()
+    except OSError as error:
+        raise InputError(f"{file}: {(error.strerror or str(error)).lower()}") from None
+    if b"<!DOCTYPE" in data or b"<!ENTITY" in data:
+        raise InputError(f"{file}: it declares a document type or entities, which is refused")
+    try:
+        return nx.read_graphml(io.BytesIO(data))
+    except (ParseError, nx.NetworkXException, ValueError, LookupError, TypeError) as error:
+        reason = " ".join(str(error).split())
+        raise InputError(f"{file}: not a GraphML file that networkx reads: {reason}") from None
+
+
+def _ways(graph: nx.Graph) -> list[tuple[Place, Place]]:
+    """The ways in order of their places; opposite directed edges pair up."""
+    edges = Counter(list(graph.edges()))
+    if graph.is_directed():
+        pairs = {tuple(sorted(edge)) for edge in edges}
+        count = {(a, b): max(edges[a, b], edges[b, a]) for a, b in pairs}
+    else:
+        count = Counter()
+        for edge, number in edges.items():
+            count[tuple(sorted(edge))] += number
+    return [way for way in sorted(count) for _ in range(count[way])]
+
+
+def _point(file: str | Path, graph: nx.Graph, place: Place) -> Point:
+    attributes = graph.nodes[place]
+    for x, y in (("x", "y"), ("lon", "lat")):
+        if x in attributes and y in attributes:
+            try:
+                point = float(attributes[x]), float(attributes[y])
+            except (TypeError, ValueError):
+                point = math.nan, math.nan
+            if all(map(math.isfinite, point)):
+                return point
+    raise InputError(f"{file}: place {place} has no coordinates (x, y or lon, lat)")
+
+
+def _unprojected(graph: nx.Graph, points: dict[Place, Point]) -> bool:
+    """Whether the coordinates are degrees of longitude and latitude."""
+    crs = str(graph.graph.get("crs", "")).lower()
+    if crs:
+        return "4326" in crs or "longlat" in crs or "latlong" in crs
+    return all(abs(x) <= 180 and abs(y) <= 90 for x, y in points.values())
+
+
+def _provenance(graph: nx.Graph) -> tuple[str, ...]:
+    """Source and licence, where the file tells them."""
+    maker = str(graph.graph.get("created_with", ""))
+    if not maker.startswith("OSMnx"):
+        return ()
+    date = str(graph.graph.get("created_date", ""))[:10]
+    return (
+        f"source: OpenStreetMap contributors, {date}, by {maker}",
+        "licence: ODbL 1.0, https://opendatacommons.org/licenses/odbl/",
+    )

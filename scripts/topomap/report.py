@@ -1,0 +1,101 @@
+"""Answers of ``solve``: maps as JSON, or as lines to read."""
+
+import json
+from typing import Any, TextIO
+
+from topomap.experience import Experience
+from topomap.solver import Found, Query
+from topomap.topology import TopologicalMap
+
+
+def map_json(experience: Experience, found: Found) -> dict[str, Any]:
+    """A hypothesis as JSON. A gateway or dstate is ``[place, slot]``; a link its two
+    gateways; a path its dstates in order, with the slot of its heading; a face the
+    gateways its walk leaves by (the paper's next); ``dstate`` where the agent is."""
+    world = experience.map_of(found.at)
+    return {
+        "at": [[step, place, slot] for step, (place, slot) in enumerate(found.at)],
+        "places": [
+            {"place": place, "gateways": sorted(star), "landmarks": sorted(world.landmarks[place])}
+            for place, star in world.stars.items()
+        ],
+        "links": world.edges(),
+        "paths": world.paths(),
+        "faces": world.faces(),
+        "genus": world.genus(),
+        "pending": world.pending(),
+        "dstate": found.at[-1],
+    }
+
+
+def map_line(experience: Experience, found: Found) -> str:
+    """A hypothesis in one line: its size, and the dstate after each step."""
+    world = experience.map_of(found.at)
+    pending = len(world.pending())
+    return (
+        f"{len(world.stars)} places, {len(world.edges())} links, {len(world.paths())} paths, "
+        f"genus {world.genus()}, {f'{pending} gateways pending' if pending else 'closed'}: "
+        + " ".join(f"{place}.{slot}" for place, slot in found.at)
+    )
+
+
+class Report:
+    """The answer for one instance, written as it is found."""
+
+    def __init__(
+        self,
+        out: TextIO,
+        instance: str,
+        experience: Experience,
+        query: Query,
+        truth: TopologicalMap | None,
+        as_json: bool,
+    ):
+        self.out, self.as_json = out, as_json
+        self.experience, self.truth = experience, truth
+        self.count = 0
+        self.cost: tuple[int, ...] = ()
+        self.proved = True
+        if as_json:
+            head = {
+                "instance": instance,
+                "parts": sorted(query.parts),
+                "bound": query.places,
+                "horizon": query.horizon,
+            }
+            out.write(json.dumps(head)[:-1] + ', "maps": [')
+
+    def add(self, found: Found) -> None:
+        """Write one map."""
+        self.count += 1
+        self.cost, self.proved = found.cost, found.proved
+        real = self.truth and self.experience.map_of(found.at).isomorphic(self.truth)
+        if self.as_json:
+            answer = map_json(self.experience, found)
+            if real is not None:
+                answer["real"] = real
+            self.out.write(",\n" * (self.count > 1) + "\n" * (self.count == 1) + json.dumps(answer))
+        else:
+            mark = " (the real map)" if real else ""
+            self.out.write(f"map {self.count}{mark}: {map_line(self.experience, found)}\n")
+
+    def end(self, kind: str, fault: str | None) -> None:
+        """Write what the maps are, and whether they are all."""
+        if self.as_json:
+            tail = {
+                "kind": kind,
+                "count": self.count,
+                "cost": self.cost,
+                "proved": self.proved and not (fault and not self.count),
+                "complete": fault is None,
+                "fault": fault,
+            }
+            self.out.write("\n], " + json.dumps(tail)[1:] + "\n")
+            return
+        word = "map" if self.count == 1 else "maps"
+        line = f"{self.count} {word}" if kind == "consistent" else f"{self.count} {kind} {word}"
+        if self.cost:
+            line += f", cost {' '.join(map(str, self.cost))}"
+        if not self.proved:
+            line += ", not proved to be best"
+        self.out.write(line + (f"; partial: {fault}\n" if fault else "\n"))

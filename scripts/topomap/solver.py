@@ -1,0 +1,219 @@
+"""clingo on the encodings: every hypothesis, or the best ones.
+
+The solver runs in a thread of its own, so that a time limit and Ctrl-C end it at any
+moment, while it grounds too, and what was found until then is kept.
+"""
+
+import queue
+import threading
+import time
+from collections import deque
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TypeVar
+
+import clingo
+from tqdm import tqdm
+
+from topomap.errors import InputError
+from topomap.experience import DState, Experience
+
+ENCODINGS = Path(__file__).resolve().parents[2] / "encodings"
+PARTS = {
+    "planar": "links join gateways of one face",
+    "euler": "the same by |V| - |E| + faces = 2",
+    "closed": "no gateway is pending",
+    "travelled": "every path holds two places or more",
+    "boundary": "no place is both left and right of a path",
+    "perpendicular": "paths meet once, no three make a triangle",
+    "genus": "least genus",
+    "minimal": "fewest paths, then fewest places",
+}
+OPTIMIZING = {"genus", "minimal"}
+
+At = tuple[DState, ...]
+Answer = TypeVar("Answer")
+SOLVER = "clingo"
+
+
+class Stopped(Exception):
+    """The search ended before all was found; the message says why."""
+
+
+@dataclass(frozen=True)
+class Query:
+    """Which hypotheses are asked for: the parts of the theory that are to hold, the
+    most places, and the last step that counts."""
+
+    parts: frozenset[str] = frozenset()
+    places: int | None = None
+    horizon: int | None = None
+
+    @property
+    def optimizes(self) -> bool:
+        return bool(self.parts & OPTIMIZING)
+
+    def having(self, *parts: str) -> "Query":
+        """The query with more parts."""
+        return replace(self, parts=self.parts | set(parts))
+
+    def control(self, facts: str) -> clingo.Control:
+        """clingo with the encodings and the facts, not yet grounded."""
+        arguments = ["0"]
+        if self.optimizes:
+            arguments.append("--opt-mode=optN")
+        files = ["topomap", *sorted(self.parts)]
+        if self.places is not None:
+            files.append("bound")
+            arguments += ["-c", f"places={self.places}"]
+        if self.horizon is not None:
+            arguments += ["-c", f"horizon={self.horizon}"]
+        control = clingo.Control(arguments)
+        for file in files:
+            path = ENCODINGS / f"{file}.lp"
+            if not path.is_file():
+                raise InputError(f"{path}: not found; install with pip install -e, as make does")
+            control.load(str(path))
+        control.add("base", [], facts)
+        return control
+
+
+class Watch:
+    """A time limit in seconds, and a progress line on stderr when the work takes long."""
+
+    def __init__(self, timeout: float | None = None, quiet: bool = False):
+        self.found = 0
+        self.deadline = None if timeout is None else time.monotonic() + timeout
+        self.bar = tqdm(unit=" maps", delay=2, leave=False, disable=quiet)
+
+    def title(self, text: str) -> None:
+        """Say what is being done."""
+        self.bar.set_description(text, refresh=False)
+
+    def tick(self) -> None:
+        """Show progress; raises Stopped past the time limit."""
+        self.bar.update(self.found - self.bar.n)
+        if self.deadline is not None and time.monotonic() > self.deadline:
+            raise Stopped("timeout")
+
+
+def answers(
+    experience: Experience,
+    query: Query,
+    watch: Watch,
+    read: Callable[[clingo.Model], Answer | None],
+) -> Iterator[Answer]:
+    """What ``read`` makes of each model, in the solver's order; a model of which it
+    makes None is passed over. Raises Stopped at the time limit."""
+    found: queue.Queue[Answer | Exception | None] = queue.Queue(maxsize=1000)
+    stop = threading.Event()
+
+    def put(item: Answer | Exception | None) -> None:
+        while not stop.is_set():
+            try:
+                return found.put(item, timeout=0.1)
+            except queue.Full:
+                continue
+
+    def take(model: clingo.Model) -> bool:
+        watch.found += 1
+        answer = read(model)
+        if answer is not None:
+            put(answer)
+        return not stop.is_set()
+
+    def work() -> None:
+        try:
+            control.ground()
+            if not stop.is_set():
+                control.solve(on_model=take)
+            put(None)
+        except Exception as error:  # noqa: BLE001 - raised again in the caller's thread
+            put(error)
+
+    control = query.control(experience.facts())
+    thread = threading.Thread(target=work, name=SOLVER, daemon=True)
+    thread.start()
+    try:
+        while True:
+            try:
+                item = found.get(timeout=0.1)
+            except queue.Empty:
+                watch.tick()
+                continue
+            if item is None:
+                return
+            if isinstance(item, Exception):
+                raise item
+            watch.tick()
+            yield item
+    finally:
+        stop.set()
+        control.interrupt()
+        thread.join(timeout=0.5)
+
+
+def solving() -> bool:
+    """Whether a solver that was told to stop still runs: clingo cannot be interrupted
+    while it grounds."""
+    return any(thread.name == SOLVER for thread in threading.enumerate())
+
+
+@dataclass(frozen=True)
+class Found:
+    """A hypothesis: the dstate after each step, and if the query minimises, its costs,
+    most important first, and whether it is proved that none has less."""
+
+    at: tuple[DState, ...]
+    cost: tuple[int, ...] = ()
+    proved: bool = True
+
+
+def hypotheses(experience: Experience, query: Query, watch: Watch) -> Iterator[Found]:
+    """Every hypothesis of a query; if it minimises, better and better ones, and then
+    all of the best with their proof."""
+
+    def read(model: clingo.Model) -> Found:
+        facts = sorted([a.number for a in fact.arguments] for fact in model.symbols(shown=True))
+        at = tuple((place, slot) for _, place, slot in facts)
+        if query.optimizes:
+            return Found(at, tuple(model.cost), model.optimality_proven)
+        return Found(at)
+
+    return answers(experience, query, watch, read)
+
+
+def best(experience: Experience, query: Query, watch: Watch) -> Iterator[tuple[str, Found]]:
+    """The best maps (semantics: "optimal" and "best so far"), each with its kind.
+
+    ``optimal``: closed, with consistent boundaries, fewest paths, then fewest places;
+    where there is none, ``best so far``: the same, pending gateways allowed.
+    """
+    for kind, parts in (
+        ("optimal", ("closed", "boundary", "minimal")),
+        ("best so far", ("boundary", "minimal")),
+    ):
+        some = False
+        for found in hypotheses(experience, query.having(*parts), watch):
+            some = True
+            yield kind, found
+        if some:
+            return
+
+
+def count(experience: Experience, query: Query, watch: Watch) -> tuple[int, int]:
+    """The number of hypotheses (of best ones, if the query minimises), and of those
+    among them whose last step added a link (or that have no step)."""
+    last = experience.steps if query.horizon is None else min(query.horizon, experience.steps)
+    fresh = clingo.Function("fresh", [clingo.Number(last)])
+    total = grown = 0
+
+    def read(model: clingo.Model) -> None:
+        nonlocal total, grown
+        if model.optimality_proven or not query.optimizes:
+            total += 1
+            grown += last == 0 or model.contains(fresh)
+
+    deque(answers(experience, query, watch, read), maxlen=0)
+    return total, grown

@@ -1,0 +1,173 @@
+"""Topological maps: places with gateways in cyclic order, and the links between them.
+
+A map is a rotation system. Its gateways are pairs (place, slot), slots numbered
+clockwise from 0 to ``slots - 1``; opposite slots are ``slots / 2`` apart. The same
+class holds the map of a hypothesis and the map of a whole environment.
+"""
+
+from collections.abc import Hashable, Iterator, Mapping
+from dataclasses import dataclass, field
+
+Place = Hashable
+Gateway = tuple[Place, int]
+
+
+@dataclass(frozen=True)
+class TopologicalMap:
+    """A map (the paper, sections II and III.A).
+
+    ``stars`` gives the gateways of each place; ``links`` gives the gateway at the
+    other end of each linked gateway, in both directions; ``landmarks`` the landmarks
+    recognised at a place, as text.
+    """
+
+    slots: int
+    stars: Mapping[Place, frozenset[int]]
+    links: Mapping[Gateway, Gateway]
+    landmarks: Mapping[Place, frozenset[str]] = field(default_factory=dict)
+
+    def gateways(self) -> Iterator[Gateway]:
+        """All gateways, by place and slot."""
+        for place, star in self.stars.items():
+            for slot in sorted(star):
+                yield place, slot
+
+    def edges(self) -> list[tuple[Gateway, Gateway]]:
+        """Each link once, from the end that comes first among the gateways."""
+        seen: set[Gateway] = set()
+        edges = []
+        for gateway in self.gateways():
+            if gateway in self.links and gateway not in seen:
+                seen |= {gateway, self.links[gateway]}
+                edges.append((gateway, self.links[gateway]))
+        return edges
+
+    def pending(self) -> list[Gateway]:
+        """Gateways without a link (the paper, section III.B)."""
+        return [gateway for gateway in self.gateways() if gateway not in self.links]
+
+    def view(self, gateway: Gateway) -> frozenset[int]:
+        """Gateways of the place, as slots clockwise from the one stood at."""
+        place, slot = gateway
+        return frozenset((other - slot) % self.slots for other in self.stars[place])
+
+    def opposite(self, gateway: Gateway) -> Gateway:
+        """The gateway or bare direction straight across the place."""
+        place, slot = gateway
+        return place, (slot + self.slots // 2) % self.slots
+
+    def straight_on(self, gateway: Gateway) -> list[Gateway]:
+        """Gateways of arrival on the walk that leaves by ``gateway`` and goes straight
+        on, up to a pending gateway, a place without a gateway ahead, or the return to
+        the start."""
+        arrivals: list[Gateway] = []
+        ahead = gateway
+        while ahead in self.links:
+            arrivals.append(self.links[ahead])
+            ahead = self.opposite(arrivals[-1])
+            if ahead == gateway:
+                break
+        return arrivals
+
+    def paths(self) -> list[list[Gateway]]:
+        """Each path as its dstates in order: places, and the slot of its heading there.
+
+        A path continues through opposite gateways (semantics of the SSH). A circular
+        path is given once round.
+        """
+        paths = []
+        done: set[Gateway] = set()
+        for gateway in self.gateways():
+            if gateway in done or self.opposite(gateway) in done:
+                continue
+            back = self.straight_on(self.opposite(gateway))
+            circular = bool(back) and back[-1] == gateway
+            path = [] if circular else list(reversed(back))
+            path.append(gateway)
+            path.extend(self.opposite(arrival) for arrival in self.straight_on(gateway))
+            if circular:
+                path.pop()
+            done |= {end for dstate in path for end in (dstate, self.opposite(dstate))}
+            paths.append(path)
+        return paths
+
+    def path_axiom_fault(self) -> str | None:
+        """How the map breaks the path axiom, or None: a place occurs at most once on
+        a path, and no path is circular."""
+        for path in self.paths():
+            places = [place for place, _ in path]
+            for place in places:
+                if places.count(place) > 1:
+                    return f"a path passes place {label(place)} twice"
+            if self.links.get(path[-1]) == self.opposite(path[0]):
+                return f"the path through place {label(places[0])} is circular"
+        return None
+
+    def next(self, gateway: Gateway) -> Gateway:
+        """The next link of the face walk: take the link out of ``gateway``, then the
+        next linked gateway counter-clockwise (the paper's next = pred . rev)."""
+        place, slot = self.links[gateway]
+        while True:
+            slot = (slot - 1) % self.slots
+            if (place, slot) in self.links:
+                return place, slot
+
+    def faces(self) -> list[list[Gateway]]:
+        """Each face as the gateways its walk leaves by; one empty face without links."""
+        faces = []
+        done: set[Gateway] = set()
+        for gateway in self.gateways():
+            if gateway in done or gateway not in self.links:
+                continue
+            face = [gateway]
+            while (following := self.next(face[-1])) != gateway:
+                face.append(following)
+            done |= set(face)
+            faces.append(face)
+        return faces or [[]]
+
+    def genus(self) -> int:
+        """Genus by the Euler-Poincare formula, for a connected map."""
+        return (2 - len(self.stars) + len(self.links) // 2 - len(self.faces())) // 2
+
+    def isomorphic(self, other: "TopologicalMap") -> bool:
+        """Whether the maps are one up to the names of places and the slot in which
+        each place counts from: the same connected embedded graph with the same
+        directions at each place, and the same landmarks."""
+        sizes = len(self.stars), len(self.links), self.slots
+        if sizes != (len(other.stars), len(other.links), other.slots):
+            return False
+        start = next(self.gateways(), None)
+        return start is None or any(self._match(start, other, g) for g in other.gateways())
+
+    def _match(self, mine: Gateway, other: "TopologicalMap", theirs: Gateway) -> bool:
+        """Whether laying ``mine`` on ``theirs`` makes the maps coincide."""
+        image: dict[Place, Gateway] = {}
+        used: set[Place] = set()
+        stack = [(mine, theirs)]
+        while stack:
+            (place, slot), (target, at) = stack.pop()
+            turn = (at - slot) % self.slots
+            if place in image:
+                if image[place] != (target, turn):
+                    return False
+                continue
+            if target in used or self.view((place, slot)) != other.view((target, at)):
+                return False
+            if self.landmarks.get(place, frozenset()) != other.landmarks.get(target, frozenset()):
+                return False
+            image[place] = target, turn
+            used.add(target)
+            for out in sorted(self.stars[place]):
+                end = self.links.get((place, out))
+                their_end = other.links.get((target, (out + turn) % self.slots))
+                if (end is None) != (their_end is None):
+                    return False
+                if end is not None and their_end is not None:
+                    stack.append((end, their_end))
+        return len(image) == len(self.stars)
+
+
+def label(place: Place) -> str:
+    """A place's name in messages, headers and on the command line."""
+    return ",".join(map(str, place)) if isinstance(place, tuple) else str(place)
