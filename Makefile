@@ -1,0 +1,66 @@
+# make            set up, make the instances, print the paper's table beside ours
+# make test       run the tests; make test-long also those that take minutes
+# make lint       check style and types
+# make instances  make the batch that instances/batch.txt lists (try make -j2 instances)
+# make clean      remove what make made
+# make committed  make the committed instances again (MAPS: folder of the real maps)
+
+PYTHON  ?= python3
+MAPS    ?= ../shared/maps
+BIN     := .venv/bin
+SETUP   := .venv/set-up
+BATCH   := build/instances
+MAKERS  := $(addprefix scripts/topomap/,environment.py experience.py generate.py network.py \
+             route.py topology.py)
+
+.PHONY: all table instances batch test test-long lint clean committed
+.DELETE_ON_ERROR:
+
+all: instances table
+
+$(SETUP): pyproject.toml
+	$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "Python 3.11 or newer is needed: make PYTHON=...")'
+	$(PYTHON) -m venv .venv
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[dev]'
+	touch $@
+
+table: $(SETUP)
+	$(BIN)/topomap table
+
+# Each line of the family file becomes calls NAME.args, written only where they change.
+instances: $(SETUP)
+	$(BIN)/topomap family instances/batch.txt --directory $(BATCH) >/dev/null
+	@$(MAKE) --no-print-directory batch
+
+batch: $(patsubst %.args,%.lp,$(wildcard $(BATCH)/*.args))
+
+.SECONDEXPANSION:
+$(BATCH)/%.lp: $(BATCH)/%.args $(MAKERS) $$(filter %.graphml,$$(shell cat $(BATCH)/$$*.args))
+	$(BIN)/topomap generate $(shell cat $<) --output $@
+
+test: $(SETUP)
+	$(BIN)/pytest -m 'not long'
+
+test-long: $(SETUP)
+	$(BIN)/pytest
+
+lint: $(SETUP)
+	$(BIN)/ruff check scripts tests
+	$(BIN)/ruff format --check scripts tests
+	$(BIN)/mypy
+
+GENERATE  := $(BIN)/topomap generate
+MANHATTAN := network $(MAPS)/manhattan.graphml --slots 4 --north 29 --route tour
+
+committed: $(SETUP)
+	$(GENERATE) grid 3 3 --route snake -o instances/
+	$(GENERATE) grid 3 4 --route ESSENNESSWWWNEEENWWWS --name grid-3x4-paper -o instances/
+	$(GENERATE) grid 4 4 --route snake -o instances/
+	$(GENERATE) $(MANHATTAN) --steps 20 -o instances/
+	$(GENERATE) $(MANHATTAN) --steps 40 --signs 0.3 -o instances/
+	$(GENERATE) $(MANHATTAN) --signs 0.3 -o instances/
+
+clean:
+	rm -rf .venv build results .pytest_cache .mypy_cache .ruff_cache .hypothesis
+	find scripts tests -name __pycache__ -prune -exec rm -rf {} +
+	rm -rf scripts/*.egg-info
