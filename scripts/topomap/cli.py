@@ -6,7 +6,7 @@ import os
 import shlex
 import signal
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, NoReturn
 
@@ -17,7 +17,7 @@ from topomap.family import expand
 from topomap.files import output
 from topomap.generate import Instance, instance
 from topomap.report import Report
-from topomap.solver import PARTS, Found, Query, Stopped, Watch, best, hypotheses, solving
+from topomap.solver import INTERRUPT, PARTS, Query, Stopped, Watch, best, hypotheses, solving
 from topomap.statistics import KEYS, tree
 from topomap.topology import TopologicalMap
 
@@ -132,33 +132,25 @@ def _solve(args: argparse.Namespace) -> int:
 
 
 def _solve_one(args: argparse.Namespace, experience: Experience, report: Report) -> int:
-    watch = Watch(args.timeout)
     query = _query(args)
-    kind, fault, candidate = "consistent", None, None
-    answers: Iterator[tuple[str, Found]]
-    if args.optimal:
-        answers = best(experience, query, watch)
-    else:
-        kind = "best" if query.optimizes else kind
-        answers = ((kind, found) for found in hypotheses(experience, query, watch))
-    try:
-        for kind, found in answers:
-            if not found.proved:
-                candidate = found
-            elif report.count == args.limit:
-                fault = "limit"
-                break
-            else:
-                report.add(found)
-    except Stopped as stopped:
-        fault = str(stopped)
-    except KeyboardInterrupt:
-        fault = "interrupted"
-    if fault and candidate and not report.count:
-        report.add(candidate)
-    report.end(kind, fault)
+    fault, candidate = None, None
+    with Watch(args.timeout) as watch:
+        try:
+            for found in (best if args.optimal else hypotheses)(experience, query, watch):
+                if not found.proved:
+                    candidate = found
+                elif report.count == args.limit:
+                    fault = "limit"
+                    break
+                else:
+                    report.add(found)
+        except Stopped as stopped:
+            fault = str(stopped)
+        if fault and candidate and not report.count:
+            report.add(candidate)
+        report.end(fault)
     if fault:
-        return INTERRUPTED if fault == "interrupted" else PARTIAL
+        return INTERRUPTED if fault == INTERRUPT else PARTIAL
     return DONE if report.count else NO
 
 
@@ -181,11 +173,10 @@ def _count(args: argparse.Namespace) -> int:
     figures: dict[str, Any] = {}
     fault = None
     try:
-        tree(experience, _query(args), Watch(args.timeout), figures)
+        with Watch(args.timeout) as watch:
+            tree(experience, _query(args), watch, figures)
     except Stopped as stopped:
         fault = str(stopped)
-    except KeyboardInterrupt:
-        fault = "interrupted"
     with output(args.output) as out:
         if args.json:
             answer = {"instance": args.instance, **figures, "complete": not fault, "fault": fault}
@@ -199,7 +190,7 @@ def _count(args: argparse.Namespace) -> int:
             if fault:
                 out.write(f"partial: {fault}\n")
     if fault:
-        return INTERRUPTED if fault == "interrupted" else PARTIAL
+        return INTERRUPTED if fault == INTERRUPT else PARTIAL
     return DONE if figures["final"] else NO
 
 
@@ -256,7 +247,9 @@ def _family(args: argparse.Namespace) -> int:
         if not path.exists() or path.read_text(encoding="utf-8") != text:
             with output(str(path)) as file:
                 file.write(text)
-    print(json.dumps({"instances": list(calls), "complete": True}) if args.json else "\n".join(calls))
+    print(
+        json.dumps({"instances": list(calls), "complete": True}) if args.json else "\n".join(calls)
+    )
     return DONE
 
 
@@ -278,7 +271,7 @@ def _parser() -> Parser:
 
 
 def _command(commands: Any, name: str, run: Any, help: str, example: str) -> Parser:
-    command = commands.add_parser(
+    command: Parser = commands.add_parser(
         name,
         help=help,
         description=help[0].upper() + help[1:] + ".",
@@ -324,17 +317,30 @@ def _add_generate(commands: Any) -> None:
   topomap generate torus 3 3 --route walk --steps 20 --seed 1
   topomap generate network city.graphml --slots 4 --north 29 --route tour --signs 0.3""",
     )
-    common = argparse.ArgumentParser(add_help=False)
+    common = Parser(add_help=False)
     add = common.add_argument
-    add("--route", required=True, metavar="ROUTE",
+    add(
+        "--route",
+        required=True,
+        metavar="ROUTE",
         help="snake; walk (random); tour (over every way); compass letters such as ESSENN "
-        "(4 slots; with 8, apart by commas: N,NE,E); or absolute slots: 0,3,1")
+        "(4 slots; with 8, apart by commas: N,NE,E); or absolute slots: 0,3,1",
+    )
     add("--steps", type=_at_least(0), metavar="N", help="cut the route after N steps")
     add("--start", metavar="PLACE", help="first place, such as 0,2 (default: the smallest)")
-    add("--facing", type=int, metavar="SLOT",
-        help="gateway stood at first (default: the one first left by)")
-    add("--signs", type=_rate, default=0.0, metavar="RATE",
-        help="share of places that carry their own name as a landmark")
+    add(
+        "--facing",
+        type=int,
+        metavar="SLOT",
+        help="gateway stood at first (default: the one first left by)",
+    )
+    add(
+        "--signs",
+        type=_rate,
+        default=0.0,
+        metavar="RATE",
+        help="share of places that carry their own name as a landmark",
+    )
     add("--seed", type=int, metavar="N", help="for walk, signs and maze (default: 0)")
     add("--name", help="name of the instance (default: made from the arguments)")
     add("--truth", metavar="FILE", help="also write the true hypothesis, for solve --truth")
@@ -353,23 +359,39 @@ def _add_generate(commands: Any) -> None:
         sub.add_argument("rows", type=_at_least(1))
         sub.add_argument("columns", type=_at_least(1))
         if kind == "maze":
-            sub.add_argument("--thin", type=_rate, default=0.3, metavar="RATE",
-                             help="share of the ways to take away (default: %(default)s)")
+            sub.add_argument(
+                "--thin",
+                type=_rate,
+                default=0.3,
+                metavar="RATE",
+                help="share of the ways to take away (default: %(default)s)",
+            )
     help = "a street or corridor network with coordinates"
     sub = kinds.add_parser("network", parents=[common], help=help, description=help)
     sub.add_argument("file", metavar="FILE.graphml")
-    sub.add_argument("--slots", type=_at_least(2), default=4, metavar="K",
-                     help="directions at a place, even (default: %(default)s)")
-    sub.add_argument("--north", type=float, default=0.0, metavar="DEGREES",
-                     help="bearing of slot 0, clockwise of north (default: %(default)g)")
+    sub.add_argument(
+        "--slots",
+        type=_at_least(2),
+        default=4,
+        metavar="K",
+        help="directions at a place, even (default: %(default)s)",
+    )
+    sub.add_argument(
+        "--north",
+        type=float,
+        default=0.0,
+        metavar="DEGREES",
+        help="bearing of slot 0, clockwise of north (default: %(default)g)",
+    )
 
 
 def _add_query(command: Parser) -> None:
     for part, help in PARTS.items():
         command.add_argument(f"--{part}", action="store_true", help=help)
     command.add_argument("--bound", type=_at_least(1), metavar="B", help="at most B places")
-    command.add_argument("--horizon", type=_at_least(0), metavar="T",
-                         help="cut the experience after step T")
+    command.add_argument(
+        "--horizon", type=_at_least(0), metavar="T", help="cut the experience after step T"
+    )
     command.add_argument("--timeout", type=_seconds, metavar="S", help="stop after S seconds")
     command.add_argument("--json", action="store_true", help="write JSON")
     command.add_argument("-o", "--output", metavar="FILE", help="file to write (default: stdout)")
@@ -386,12 +408,18 @@ def _add_solve(commands: Any) -> None:
   topomap solve instances/grid-3x4-paper.lp --optimal --json""",
     )
     command.add_argument("instance", nargs="+", metavar="INSTANCE")
-    command.add_argument("--optimal", action="store_true",
-                         help="closed maps with consistent boundaries, fewest paths and places; "
-                         "if there is none, the best so far: pending gateways allowed")
+    command.add_argument(
+        "--optimal",
+        action="store_true",
+        help="closed maps with consistent boundaries, fewest paths and places; "
+        "if there is none, the best so far: pending gateways allowed",
+    )
     command.add_argument("--limit", type=_at_least(1), metavar="N", help="stop after N maps")
-    command.add_argument("--truth", metavar="FILE",
-                         help="mark the maps that are the real one (from generate --truth)")
+    command.add_argument(
+        "--truth",
+        metavar="FILE",
+        help="mark the maps that are the real one (from generate --truth)",
+    )
     _add_query(command)
 
 
@@ -415,11 +443,20 @@ def _add_table(commands: Any) -> None:
         "print the paper's Figure 4 beside ours, and write it as JSON",
         "  topomap table",
     )
-    command.add_argument("--jobs", type=_at_least(1), metavar="N",
-                         help="columns counted at a time (default: one a processor)")
+    command.add_argument(
+        "--jobs",
+        type=_at_least(1),
+        metavar="N",
+        help="columns counted at a time (default: one a processor)",
+    )
     command.add_argument("--json", action="store_true", help="print JSON instead of the table")
-    command.add_argument("-o", "--output", metavar="FILE", default="results/figure4.json",
-                         help="file to write (default: %(default)s)")
+    command.add_argument(
+        "-o",
+        "--output",
+        metavar="FILE",
+        default="results/figure4.json",
+        help="file to write (default: %(default)s)",
+    )
 
 
 def _add_family(commands: Any) -> None:
@@ -431,8 +468,13 @@ def _add_family(commands: Any) -> None:
         "  topomap family instances/batch.txt -d build/instances",
     )
     command.add_argument("file", metavar="FAMILY")
-    command.add_argument("-d", "--directory", required=True, metavar="DIR",
-                         help="folder for NAME.args; files of instances no longer listed go")
+    command.add_argument(
+        "-d",
+        "--directory",
+        required=True,
+        metavar="DIR",
+        help="folder for NAME.args; files of instances no longer listed go",
+    )
     command.add_argument("--json", action="store_true", help="print JSON")
 
 

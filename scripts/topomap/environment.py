@@ -8,6 +8,7 @@ import math
 import random
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
+from typing import Any
 
 import clingo
 import networkx as nx
@@ -58,6 +59,8 @@ def _term(place: Place) -> str:
 
 def world(slots: int, links: Mapping[Gateway, Gateway]) -> TopologicalMap:
     """The map in which every gateway is linked, places in order."""
+    if not links:
+        raise InputError("an environment needs a way between two places")
     stars: dict[Place, set[int]] = {place: set() for place in sorted({p for p, _ in links})}
     for place, slot in links:
         stars[place].add(slot)
@@ -88,7 +91,7 @@ def maze(rows: int, columns: int, thin: float, seed: int) -> Environment:
     away in random order, those excepted on which the connection depends."""
     links = dict(grid(rows, columns).map.links)
     ways = world(4, links).edges()
-    graph = nx.MultiGraph((a[0], b[0], a) for a, b in ways)
+    graph: nx.MultiGraph[Place] = nx.MultiGraph((a[0], b[0], a) for a, b in ways)
     spare = round(thin * len(ways))
     for a, b in random.Random(seed).sample(ways, len(ways)):
         if spare and not _is_bridge(graph, a, b):
@@ -100,7 +103,7 @@ def maze(rows: int, columns: int, thin: float, seed: int) -> Environment:
     return Environment(name, call, world(4, links), (rows, columns))
 
 
-def _is_bridge(graph: nx.MultiGraph, a: Gateway, b: Gateway) -> bool:
+def _is_bridge(graph: "nx.MultiGraph[Any]", a: Gateway, b: Gateway) -> bool:
     graph.remove_edge(a[0], b[0], a)
     bridge = not nx.has_path(graph, a[0], b[0])
     graph.add_edge(a[0], b[0], a)
@@ -112,7 +115,7 @@ def lattice(kind: str, rows: int, columns: int) -> Environment:
     ``triangles``: a triangular lattice, up to six. Six slots, 60 degrees apart, slot 0
     at a bearing of 30 degrees."""
     make = nx.hexagonal_lattice_graph if kind == "hexagons" else nx.triangular_lattice_graph
-    graph = make(rows, columns)
+    graph: nx.Graph[Any] = make(rows, columns)
     positions = nx.get_node_attributes(graph, "pos")
     ways = sorted(tuple(sorted(way)) for way in graph.edges())
 

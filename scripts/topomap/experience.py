@@ -81,9 +81,7 @@ def explore(
     first: dict[Place, tuple[int, int]] = {}
     for step, (place, slot) in enumerate(dstates):
         first.setdefault(place, (step, slot))
-    truth = [
-        (first[place][0], (slot - first[place][1]) % world.slots) for place, slot in dstates
-    ]
+    truth = [(first[place][0], (slot - first[place][1]) % world.slots) for place, slot in dstates]
     views = tuple(world.view(dstate) for dstate in dstates)
     landmarks = tuple(world.landmarks.get(place, frozenset()) for place, _ in dstates)
     return Experience(world.slots, views, tuple(turns), landmarks), tuple(truth)
@@ -159,7 +157,7 @@ def _checked(
         for turn in turns.get(step, ()):
             if turn not in views[step - 1]:
                 raise InputError(
-                    f"{source}: step {step}: turn {turn} is to no gateway seen after step {step - 1}"
+                    f"{source}: step {step}: turn {turn}: no gateway there after step {step - 1}"
                 )
     return Experience(
         number,

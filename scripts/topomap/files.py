@@ -5,14 +5,15 @@ import os
 import sys
 import tempfile
 from collections.abc import Iterator
+from errno import EISDIR
 from pathlib import Path
-from typing import TextIO
+from typing import IO
 
 from topomap.errors import InputError
 
 
 @contextlib.contextmanager
-def output(path: str | None) -> Iterator[TextIO]:
+def output(path: str | None) -> Iterator[IO[str]]:
     """A text to write: standard output without a path, else a temporary file beside
     the named one that takes its place when all is written. Raises InputError where
     that cannot be."""
@@ -21,21 +22,23 @@ def output(path: str | None) -> Iterator[TextIO]:
         return
     target = Path(path).resolve()
     try:
+        if target.is_dir():
+            raise IsADirectoryError(EISDIR, os.strerror(EISDIR))
         if target.exists() and not target.is_file():
-            if target.is_dir():
-                raise InputError(f"{path}: is a directory")
-            with open(target, "w", encoding="utf-8") as device:
+            with target.open("w", encoding="utf-8") as device:
                 yield device
             return
-        handle, name = tempfile.mkstemp(dir=target.parent, prefix=f".{target.name}.", suffix=".tmp")
-        try:
-            with open(handle, "w", encoding="utf-8") as text:
+        with tempfile.NamedTemporaryFile(
+            "w", encoding="utf-8", dir=target.parent, prefix=f".{target.name}.", delete=False
+        ) as text:
+            try:
                 yield text
-            os.chmod(name, 0o666 & ~_umask())
-            os.replace(name, target)
-        except BaseException:
-            os.unlink(name)
-            raise
+                text.flush()
+                Path(text.name).chmod(0o666 & ~_umask())
+                Path(text.name).replace(target)
+            except BaseException:
+                Path(text.name).unlink()
+                raise
     except OSError as error:
         raise InputError(f"{path}: {(error.strerror or str(error)).lower()}") from None
 

@@ -9,6 +9,7 @@ import io
 import math
 from collections import Counter
 from pathlib import Path
+from typing import Any
 from xml.etree.ElementTree import ParseError
 
 import networkx as nx
@@ -55,7 +56,7 @@ def load(file: str | Path, slots: int, north: float) -> tuple[Environment, list[
     return Environment(path.stem, call, world, notes=notes), warnings
 
 
-def _read(file: str | Path) -> nx.Graph:
+def _read(file: str | Path) -> "nx.Graph[Any]":
     try:
         data = Path(file).read_bytes()
     except OSError as error:
@@ -69,7 +70,7 @@ def _read(file: str | Path) -> nx.Graph:
         raise InputError(f"{file}: not a GraphML file that networkx reads: {reason}") from None
 
 
-def _ways(graph: nx.Graph) -> list[tuple[Place, Place]]:
+def _ways(graph: "nx.Graph[Any]") -> list[tuple[Place, Place]]:
     """The ways in order of their places; opposite directed edges pair up."""
     edges = Counter(list(graph.edges()))
     if graph.is_directed():
@@ -82,7 +83,7 @@ def _ways(graph: nx.Graph) -> list[tuple[Place, Place]]:
     return [way for way in sorted(count) for _ in range(count[way])]
 
 
-def _point(file: str | Path, graph: nx.Graph, place: Place) -> Point:
+def _point(file: str | Path, graph: "nx.Graph[Any]", place: Place) -> Point:
     attributes = graph.nodes[place]
     for x, y in (("x", "y"), ("lon", "lat")):
         if x in attributes and y in attributes:
@@ -95,7 +96,7 @@ def _point(file: str | Path, graph: nx.Graph, place: Place) -> Point:
     raise InputError(f"{file}: place {place} has no coordinates (x, y or lon, lat)")
 
 
-def _unprojected(graph: nx.Graph, points: dict[Place, Point]) -> bool:
+def _unprojected(graph: "nx.Graph[Any]", points: dict[Place, Point]) -> bool:
     """Whether the coordinates are degrees of longitude and latitude."""
     crs = str(graph.graph.get("crs", "")).lower()
     if crs:
@@ -103,7 +104,7 @@ def _unprojected(graph: nx.Graph, points: dict[Place, Point]) -> bool:
     return all(abs(x) <= 180 and abs(y) <= 90 for x, y in points.values())
 
 
-def _provenance(graph: nx.Graph) -> tuple[str, ...]:
+def _provenance(graph: "nx.Graph[Any]") -> tuple[str, ...]:
     """Source and licence, where the file tells them."""
     maker = str(graph.graph.get("created_with", ""))
     if not maker.startswith("OSMnx"):

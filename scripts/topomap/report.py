@@ -1,7 +1,7 @@
 """Answers of ``solve``: maps as JSON, or as lines to read."""
 
 import json
-from typing import Any, TextIO
+from typing import IO, Any
 
 from topomap.experience import Experience
 from topomap.solver import Found, Query
@@ -44,7 +44,7 @@ class Report:
 
     def __init__(
         self,
-        out: TextIO,
+        out: IO[str],
         instance: str,
         experience: Experience,
         query: Query,
@@ -54,8 +54,7 @@ class Report:
         self.out, self.as_json = out, as_json
         self.experience, self.truth = experience, truth
         self.count = 0
-        self.cost: tuple[int, ...] = ()
-        self.proved = True
+        self.last = Found((), "best" if query.optimizes else "consistent")
         if as_json:
             head = {
                 "instance": instance,
@@ -68,34 +67,30 @@ class Report:
     def add(self, found: Found) -> None:
         """Write one map."""
         self.count += 1
-        self.cost, self.proved = found.cost, found.proved
+        self.last = found
         real = self.truth and self.experience.map_of(found.at).isomorphic(self.truth)
         if self.as_json:
             answer = map_json(self.experience, found)
-            if real is not None:
+            if self.truth:
                 answer["real"] = real
-            self.out.write(",\n" * (self.count > 1) + "\n" * (self.count == 1) + json.dumps(answer))
+            self.out.write((",\n" if self.count > 1 else "\n") + json.dumps(answer))
         else:
             mark = " (the real map)" if real else ""
             self.out.write(f"map {self.count}{mark}: {map_line(self.experience, found)}\n")
 
-    def end(self, kind: str, fault: str | None) -> None:
+    def end(self, fault: str | None) -> None:
         """Write what the maps are, and whether they are all."""
         if self.as_json:
-            tail = {
-                "kind": kind,
-                "count": self.count,
-                "cost": self.cost,
-                "proved": self.proved and not (fault and not self.count),
-                "complete": fault is None,
-                "fault": fault,
-            }
+            tail: dict[str, Any] = {"kind": self.last.kind, "count": self.count}
+            if self.last.cost:
+                tail |= {"cost": self.last.cost, "proved": self.last.proved}
+            tail |= {"complete": fault is None, "fault": fault}
             self.out.write("\n], " + json.dumps(tail)[1:] + "\n")
             return
-        word = "map" if self.count == 1 else "maps"
-        line = f"{self.count} {word}" if kind == "consistent" else f"{self.count} {kind} {word}"
-        if self.cost:
-            line += f", cost {' '.join(map(str, self.cost))}"
-        if not self.proved:
+        noun = "map" if self.count == 1 else "maps"
+        line = f"{self.count} {self.last.kind} {noun}"
+        if self.last.cost:
+            line += f", cost {' '.join(map(str, self.last.cost))}"
+        if not self.last.proved:
             line += ", not proved to be best"
         self.out.write(line + (f"; partial: {fault}\n" if fault else "\n"))

@@ -48,7 +48,7 @@ def letters(text: str, slots: int) -> list[int]:
             f"route {text!r}: with {slots} slots a route is numbers apart by commas "
             "(compass letters need 4 or 8)"
         )
-    route = []
+    route: list[int] = []
     for word in words:
         for direction in [word] if word in names else word:
             if direction not in names:
@@ -73,7 +73,7 @@ def walk(world: TopologicalMap, start: Place, seed: int) -> Iterator[int]:
 def tour(world: TopologicalMap, start: Place) -> list[int]:
     """A closed walk over every way that can be reached, by networkx's ``eulerize``;
     places and ways in sorted order."""
-    graph = nx.MultiGraph()
+    graph: nx.MultiGraph[Place] = nx.MultiGraph()
     graph.add_nodes_from(sorted(world.stars))
     for a, b in sorted(world.edges()):
         graph.add_edge(a[0], b[0], key=a)
@@ -87,7 +87,9 @@ def tour(world: TopologicalMap, start: Place) -> list[int]:
     return route
 
 
-def checked(world: TopologicalMap, start: Place, route: Iterator[int] | list[int], steps: int | None) -> list[int]:
+def checked(
+    world: TopologicalMap, start: Place, route: Iterator[int] | list[int], steps: int | None
+) -> list[int]:
     """The first ``steps`` slots of a route (all without), each of which is a way from
     where the walk then is. Raises InputError naming the step that is none."""
     place = start

@@ -5,6 +5,8 @@ moment, while it grounds too, and what was found until then is kept.
 """
 
 import queue
+import signal
+import sys
 import threading
 import time
 from collections import deque
@@ -35,6 +37,8 @@ OPTIMIZING = {"genus", "minimal"}
 At = tuple[DState, ...]
 Answer = TypeVar("Answer")
 SOLVER = "clingo"
+INTERRUPT = "interrupted"
+SIGNALS = (signal.SIGINT, signal.SIGTERM)
 
 
 class Stopped(Exception):
@@ -80,22 +84,41 @@ class Query:
 
 
 class Watch:
-    """A time limit in seconds, and a progress line on stderr when the work takes long."""
+    """A time limit in seconds, Ctrl-C, and a progress line on stderr when it takes long.
+
+    As a context it takes SIGINT and SIGTERM, so that a search ends between two answers.
+    """
 
     def __init__(self, timeout: float | None = None, quiet: bool = False):
         self.found = 0
+        self.signal = False
         self.deadline = None if timeout is None else time.monotonic() + timeout
-        self.bar = tqdm(unit=" maps", delay=2, leave=False, disable=quiet)
+        interval = 0.2 if sys.stderr.isatty() else 10
+        self.bar = tqdm(unit=" maps", delay=2, mininterval=interval, leave=False, disable=quiet)
 
     def title(self, text: str) -> None:
         """Say what is being done."""
-        self.bar.set_description(text, refresh=False)
+        self.bar.set_description_str(text, refresh=False)
 
     def tick(self) -> None:
-        """Show progress; raises Stopped past the time limit."""
+        """Show progress; raises Stopped past the time limit and after a signal."""
         self.bar.update(self.found - self.bar.n)
+        if self.signal:
+            raise Stopped(INTERRUPT)
         if self.deadline is not None and time.monotonic() > self.deadline:
             raise Stopped("timeout")
+
+    def __enter__(self) -> "Watch":
+        def note(*_: object) -> None:
+            self.signal = True
+
+        self.handlers = [(number, signal.signal(number, note)) for number in SIGNALS]
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        for number, handler in self.handlers:
+            signal.signal(number, handler)
+        self.bar.close()
 
 
 def answers(
@@ -129,7 +152,7 @@ def answers(
             if not stop.is_set():
                 control.solve(on_model=take)
             put(None)
-        except Exception as error:  # noqa: BLE001 - raised again in the caller's thread
+        except Exception as error:  # raised again in the caller's thread
             put(error)
 
     control = query.control(experience.facts())
@@ -162,15 +185,18 @@ def solving() -> bool:
 
 @dataclass(frozen=True)
 class Found:
-    """A hypothesis: the dstate after each step, and if the query minimises, its costs,
-    most important first, and whether it is proved that none has less."""
+    """A hypothesis: the dstate after each step, of what kind it is, and if the query
+    minimises, its costs, most important first, and whether they are proved least."""
 
     at: tuple[DState, ...]
+    kind: str
     cost: tuple[int, ...] = ()
     proved: bool = True
 
 
-def hypotheses(experience: Experience, query: Query, watch: Watch) -> Iterator[Found]:
+def hypotheses(
+    experience: Experience, query: Query, watch: Watch, kind: str = "consistent"
+) -> Iterator[Found]:
     """Every hypothesis of a query; if it minimises, better and better ones, and then
     all of the best with their proof."""
 
@@ -178,28 +204,27 @@ def hypotheses(experience: Experience, query: Query, watch: Watch) -> Iterator[F
         facts = sorted([a.number for a in fact.arguments] for fact in model.symbols(shown=True))
         at = tuple((place, slot) for _, place, slot in facts)
         if query.optimizes:
-            return Found(at, tuple(model.cost), model.optimality_proven)
-        return Found(at)
+            return Found(at, kind, tuple(model.cost), model.optimality_proven)
+        return Found(at, kind)
 
     return answers(experience, query, watch, read)
 
 
-def best(experience: Experience, query: Query, watch: Watch) -> Iterator[tuple[str, Found]]:
-    """The best maps (semantics: "optimal" and "best so far"), each with its kind.
+def best(experience: Experience, query: Query, watch: Watch) -> Iterator[Found]:
+    """The best maps (semantics: "optimal" and "best so far"), as ``hypotheses`` gives them.
 
     ``optimal``: closed, with consistent boundaries, fewest paths, then fewest places;
     where there is none, ``best so far``: the same, pending gateways allowed.
     """
-    for kind, parts in (
-        ("optimal", ("closed", "boundary", "minimal")),
-        ("best so far", ("boundary", "minimal")),
-    ):
-        some = False
-        for found in hypotheses(experience, query.having(*parts), watch):
-            some = True
-            yield kind, found
-        if some:
-            return
+    optimal = hypotheses(
+        experience, query.having("closed", "boundary", "minimal"), watch, "optimal"
+    )
+    first = next(optimal, None)
+    if first is not None:
+        yield first
+        yield from optimal
+    else:
+        yield from hypotheses(experience, query.having("boundary", "minimal"), watch, "best so far")
 
 
 def count(experience: Experience, query: Query, watch: Watch) -> tuple[int, int]:

@@ -6,7 +6,7 @@ A node of the tree at depth t is an answer set with ``-c horizon=t``.
 from typing import Any
 
 from topomap.experience import Experience
-from topomap.solver import Query, Stopped, Watch, count
+from topomap.solver import Query, Watch, count
 
 KEYS = ("nodes", "maps", "final", "closed", "closed_text", "optimal", "perpendicular")
 FINAL = {

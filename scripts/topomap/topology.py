@@ -5,10 +5,11 @@ clockwise from 0 to ``slots - 1``; opposite slots are ``slots / 2`` apart. The s
 class holds the map of a hypothesis and the map of a whole environment.
 """
 
-from collections.abc import Hashable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
+from typing import Any
 
-Place = Hashable
+Place = Any  # hashable, and sortable among the places of one map
 Gateway = tuple[Place, int]
 
 

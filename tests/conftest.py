@@ -1,0 +1,103 @@
+"""What the tests share: stock clingo on encodings and facts, without any of our driver."""
+
+import json
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import clingo
+import pytest
+from oracle import Hypothesis, best, tree
+
+ROOT = Path(__file__).resolve().parents[1]
+ENCODINGS = ROOT / "encodings"
+THEORY = ("experience", "places", "links", "paths", "crossings", "faces")
+PARTS = ("planar", "euler", "closed", "travelled", "boundary", "perpendicular")
+COLUMNS = json.loads((ROOT / "scripts/topomap/figure4.json").read_text())["columns"]
+SHARED = ROOT.parent / "shared" / "maps"
+BIN = Path(sys.executable).parent
+
+
+def answers(parts, facts, *arguments, programs=None):
+    """The set of hypotheses, as tuples of (place, gateway) by step, that stock clingo
+    finds; with a preference among the parts, the best ones. Fails on any message of
+    clingo and on an answer given twice. ``programs`` replaces the files."""
+    messages = []
+    optimize = {"minimal", "genus"} & set(parts)
+    options = ["0", *arguments] + (["--opt-mode=optN"] if optimize else [])
+    control = clingo.Control(options, logger=lambda _, text: messages.append(text))
+    if programs is None:
+        for part in ("topomap", *parts):
+            control.load(str(ENCODINGS / f"{part}.lp"))
+    else:
+        control.add("base", [], "\n".join(programs))
+    control.add("base", [], facts)
+    control.ground([("base", [])])
+    found = []
+
+    def read(model):
+        if optimize and not model.optimality_proven:
+            return
+        at = sorted([a.number for a in s.arguments] for s in model.symbols(shown=True))
+        assert programs or [step for step, _, _ in at] == list(range(len(at)))
+        found.append(tuple((place, slot) for _, place, slot in at))
+
+    control.solve(on_model=read)
+    assert programs or not messages, messages
+    assert programs or len(found) == len(set(found))
+    return set(found)
+
+
+class Truth:
+    """What the independent search says of an experience."""
+
+    def __init__(self, experience):
+        self.experience = (
+            experience.slots,
+            experience.views,
+            (None, *experience.turns),
+            experience.landmarks,
+        )
+        self.levels = tree(self.experience)
+        self.final = {at: Hypothesis(self.experience, at) for at in self.levels[-1]}
+
+    def having(self, *parts, bound=None):
+        """The final hypotheses that have all these properties."""
+        tests = {
+            "planar": lambda h: h.genus() == 0,
+            "euler": lambda h: h.genus() == 0,
+            "closed": Hypothesis.closed,
+            "travelled": Hypothesis.travelled,
+            "boundary": Hypothesis.boundary,
+            "perpendicular": Hypothesis.perpendicular,
+        }
+        found = {at for at, h in self.final.items() if all(tests[part](h) for part in parts)}
+        if bound is not None:
+            found = {at for at in found if len(self.final[at].stars) <= bound}
+        return found
+
+    def least(self, key, hypotheses):
+        """Those of the hypotheses whose figure is least."""
+        figures = {at: key(self.final[at]) for at in hypotheses}
+        return {at for at, figure in figures.items() if figure == min(figures.values())}
+
+    def best(self, closed):
+        return best(self.experience, self.final, closed)
+
+    def planar_tree(self):
+        return set(tree(self.experience, planar=True)[-1])
+
+
+def run(*command, **options):
+    """Run an installed command; returns the finished process, output as text."""
+    program = shutil.which(command[0], path=BIN)
+    return subprocess.run(
+        [program, *map(str, command[1:])], capture_output=True, text=True, cwd=ROOT, **options
+    )
+
+
+@pytest.fixture
+def topomap():
+    """The command ``topomap``, run from the repository's folder."""
+    return lambda *arguments, **options: run("topomap", *arguments, **options)
