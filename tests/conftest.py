@@ -85,8 +85,8 @@ class Truth:
     def best(self, closed):
         return best(self.experience, self.final, closed)
 
-    def planar_tree(self):
-        return set(tree(self.experience, planar=True)[-1])
+    def planar_levels(self):
+        return tree(self.experience, planar=True)
 
 
 def run(*command, **options):

@@ -195,33 +195,31 @@ def _count(args: argparse.Namespace) -> int:
 
 
 def _table(args: argparse.Namespace) -> int:
-    done: list[dict[str, Any]] = []
-    status = DONE
-    try:
-        for row in figure4.rows(args.jobs):
-            done.append(row)
-            print(f"counted {len(done)} of {len(figure4.COLUMNS)} columns", file=sys.stderr)
-    except KeyboardInterrupt:
-        status = INTERRUPTED
-    done.sort(key=lambda row: (row["environment"], row["planarity"]))
-    result = {"complete": status == DONE, "rows": done}
-    Path(args.output).parent.mkdir(parents=True, exist_ok=True)
-    with output(args.output) as file:
+    rows: list[dict[str, Any]] = []
+    complete = True
+    with output(args.output, parents=True) as file:
+        try:
+            for row in figure4.rows(args.jobs):
+                rows.append(row)
+                print(f"counted {len(rows)} of {len(figure4.COLUMNS)} columns", file=sys.stderr)
+        except Stopped:
+            complete = False
+        rows.sort(key=lambda row: (row["environment"], row["planarity"]))
+        result = {"complete": complete, "rows": rows}
         json.dump(result, file, indent=1)
         file.write("\n")
-    different = [cell for row in done for cell in figure4.differences(row)]
+    different = [cell for row in rows for cell in figure4.differences(row)]
     if args.json:
         print(json.dumps(result))
-    elif done:
-        print(figure4.text(done))
+    else:
+        print(figure4.text(rows))
         for cell in different:
             print(f"differs: {cell}")
-        if not different and status == DONE:
+        if not complete:
+            print("partial: interrupted")
+        elif not different:
             print("Every figure is the paper's.")
-    if status == INTERRUPTED:
-        print("partial: interrupted", file=sys.stderr)
-        return status
-    return NO if different else DONE
+    return INTERRUPTED if not complete else NO if different else DONE
 
 
 def _family(args: argparse.Namespace) -> int:

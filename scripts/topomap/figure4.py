@@ -1,10 +1,10 @@
 """The paper's table (Figure 4) beside ours."""
 
 import json
-import multiprocessing
-import signal
+import os
 import time
 from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor, as_completed
 from pathlib import Path
 from typing import Any
 
@@ -27,12 +27,12 @@ WORDS = {
 }
 
 
-def row(column: dict[str, Any]) -> dict[str, Any]:
+def row(column: dict[str, Any], watch: Watch) -> dict[str, Any]:
     """Count one column: an environment, with or without planarity."""
     begun = time.perf_counter()
     query = Query(frozenset(["planar"] if column["planarity"] else []), column["places"])
     figures: dict[str, Any] = {}
-    tree(read(INSTANCES / f"{column['instance']}.lp"), query, Watch(quiet=True), figures)
+    tree(read(INSTANCES / f"{column['instance']}.lp"), query, watch, figures)
     return {
         "environment": column["environment"],
         "planarity": column["planarity"],
@@ -44,10 +44,12 @@ def row(column: dict[str, Any]) -> dict[str, Any]:
 
 
 def rows(jobs: int | None = None) -> Iterator[dict[str, Any]]:
-    """The rows of the table, each as soon as it is counted; the largest begin first."""
-    context = multiprocessing.get_context("spawn")
-    with context.Pool(jobs, signal.signal, (signal.SIGINT, signal.SIG_IGN)) as pool:
-        yield from pool.imap_unordered(row, reversed(COLUMNS))
+    """The rows of the table, each as soon as it is counted; the largest begin first.
+    Raises Stopped when interrupted."""
+    with ThreadPoolExecutor(jobs or os.cpu_count()) as pool, Watch(quiet=True) as watch:
+        pending = [pool.submit(row, column, watch) for column in reversed(COLUMNS)]
+        for done in as_completed(pending):
+            yield done.result()
 
 
 def differences(row: dict[str, Any]) -> list[str]:

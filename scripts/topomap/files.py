@@ -13,15 +13,17 @@ from topomap.errors import InputError
 
 
 @contextlib.contextmanager
-def output(path: str | None) -> Iterator[IO[str]]:
+def output(path: str | None, parents: bool = False) -> Iterator[IO[str]]:
     """A text to write: standard output without a path, else a temporary file beside
-    the named one that takes its place when all is written. Raises InputError where
-    that cannot be."""
+    the named one that takes its place when all is written; ``parents`` makes its folder.
+    Raises InputError where that cannot be."""
     if path is None:
         yield sys.stdout
         return
     target = Path(path).resolve()
     try:
+        if parents:
+            target.parent.mkdir(parents=True, exist_ok=True)
         if target.is_dir():
             raise IsADirectoryError(EISDIR, os.strerror(EISDIR))
         if target.exists() and not target.is_file():

@@ -23,6 +23,8 @@ Point = tuple[float, float]
 
 def load(file: str | Path, slots: int, north: float) -> tuple[Environment, list[str]]:
     """The world in a GraphML file, and warnings. Raises InputError on bad input."""
+    if slots < 2 or slots % 2 or not math.isfinite(north):
+        raise InputError(f"{file}: {slots} slots, north {north}: slots are even, north is finite")
     graph = _read(file)
     loops = list(nx.selfloop_edges(graph))
     graph.remove_edges_from(loops)

@@ -50,7 +50,7 @@ def letters(text: str, slots: int) -> list[int]:
         )
     route: list[int] = []
     for word in words:
-        for direction in [word] if word in names else word:
+        for direction in [word] if word in names or not word else word:
             if direction not in names:
                 raise InputError(
                     f"route {text!r}: step {len(route) + 1}: {direction!r} is none of "

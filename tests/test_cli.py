@@ -1,0 +1,298 @@
+"""The command ``topomap``: answers, exit statuses, bad input, limits and interruption."""
+
+import json
+import signal
+import subprocess
+import time
+
+import pytest
+from conftest import BIN, ROOT, answers
+from topomap.experience import read
+from topomap.solver import PARTS
+
+GRID = "instances/grid-3x3-snake.lp"
+LARGE = "instances/manhattan-tour40-signs30.lp"
+
+
+def found(done):
+    return {tuple((p, s) for _, p, s in m["at"]) for m in json.loads(done.stdout)["maps"]}
+
+
+@pytest.mark.parametrize("part", ["", *(p for p in PARTS)])
+def test_solve_gives_the_maps_of_clingo(topomap, part):
+    done = topomap("solve", GRID, *([f"--{part}"] if part else []), "--json")
+    assert done.returncode == 0
+    parts = (part,) if part else ()
+    assert found(done) == answers(parts, read(ROOT / GRID).facts())
+    assert json.loads(done.stdout)["complete"] is True
+
+
+def test_solve_bound_and_horizon(topomap):
+    done = topomap("solve", GRID, "--bound", "9", "--horizon", "12", "--planar", "--json")
+    facts = read(ROOT / GRID).cut(12).facts()
+    assert found(done) == answers(("planar", "bound"), facts, "-c", "places=9")
+
+
+def test_a_map_tells_all_about_itself(topomap):
+    done = topomap("solve", GRID, "--closed", "--planar", "--perpendicular", "--json")
+    (only,) = json.loads(done.stdout)["maps"]
+    assert len(only["places"]) == 9
+    assert {tuple(p["gateways"]) for p in only["places"] if len(p["gateways"]) == 4} == {
+        (0, 1, 2, 3)
+    }
+    assert (len(only["links"]), len(only["paths"]), len(only["faces"])) == (12, 6, 5)
+    assert sum(map(len, only["faces"])) == 24
+    assert (only["genus"], only["pending"], only["dstate"]) == (0, [], only["at"][-1][1:])
+    assert all(len(path) == 3 for path in only["paths"])
+
+
+@pytest.mark.parametrize(
+    ("arguments", "kind", "count", "cost"),
+    [
+        ([GRID], "optimal", 2, [6, 9]),
+        ([GRID, "--planar"], "optimal", 1, [6, 9]),
+        (["instances/grid-3x4-paper.lp"], "optimal", 8, [7, 12]),
+        (["instances/grid-3x4-paper.lp", "--genus"], "optimal", 1, [0, 7, 12]),
+        (["instances/manhattan-tour20.lp"], "best so far", 3, [8, 13]),
+        ([GRID, "--horizon", "0"], "best so far", 1, [2, 1]),
+    ],
+)
+def test_optimal_says_which_kind(topomap, arguments, kind, count, cost):
+    done = topomap("solve", *arguments, "--optimal", "--json")
+    answer = json.loads(done.stdout)
+    assert (answer["kind"], answer["count"], answer["cost"]) == (kind, count, cost)
+    assert answer["proved"] is answer["complete"] is True
+    text = topomap("solve", *arguments, "--optimal").stdout.splitlines()
+    assert len(text) == count + 1
+    assert text[-1].startswith(f"{count} {kind} map")
+
+
+def test_several_instances(topomap):
+    done = topomap("solve", GRID, "instances/grid-3x4-paper.lp", "--optimal", "--json")
+    answer = json.loads(done.stdout)
+    assert done.returncode == 0
+    assert answer["complete"] is True
+    assert [result["count"] for result in answer["results"]] == [2, 8]
+
+
+def test_no_map_is_status_1(topomap):
+    done = topomap("solve", GRID, "--bound", "3", "--json")
+    assert done.returncode == 1
+    assert json.loads(done.stdout)["maps"] == []
+    assert topomap("count", GRID, "--bound", "3").returncode == 1
+
+
+def test_a_limit_is_status_3_and_says_so(topomap):
+    done = topomap("solve", GRID, "--limit", "5", "--json")
+    answer = json.loads(done.stdout)
+    assert done.returncode == 3
+    assert len(answer["maps"]) == answer["count"] == 5
+    assert (answer["complete"], answer["fault"]) == (False, "limit")
+    assert topomap("solve", GRID, "--limit", "88").returncode == 0
+    assert "partial: limit" in topomap("solve", GRID, "--limit", "87").stdout
+
+
+def test_a_timeout_is_status_3_and_keeps_what_was_found(topomap):
+    done = topomap("solve", LARGE, "--timeout", "1", "--json")
+    answer = json.loads(done.stdout)
+    assert done.returncode == 3
+    assert len(answer["maps"]) == answer["count"]
+    assert (answer["complete"], answer["fault"]) == (False, "timeout")
+    done = topomap("count", LARGE, "--timeout", "1", "--json")
+    answer = json.loads(done.stdout)
+    assert done.returncode == 3
+    assert answer["complete"] is False
+    assert answer["nodes"] is None
+    assert answer["per_step"][:3] == [1, 1, 1]
+
+
+def test_a_timeout_ends_grounding(topomap):
+    begun = time.monotonic()
+    done = topomap("solve", "instances/manhattan-tour88-signs30.lp", "--planar", "--timeout", "0.5")
+    assert done.returncode == 3
+    assert time.monotonic() - begun < 4
+
+
+def test_an_interrupted_table_says_so(tmp_path):
+    file = tmp_path / "figure4.json"
+    with subprocess.Popen(
+        [BIN / "topomap", "table", "-o", file], cwd=ROOT, stdout=subprocess.PIPE, text=True
+    ) as process:
+        time.sleep(1.5)
+        process.send_signal(signal.SIGINT)
+        assert process.stdout.read().endswith("partial: interrupted\n")
+        assert process.wait(timeout=20) == 130
+    answer = json.loads(file.read_text())
+    assert answer["complete"] is False
+    assert len(answer["rows"]) < 6
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_an_interrupt_keeps_what_was_found(tmp_path, number):
+    file = tmp_path / "maps.json"
+    command = [BIN / "topomap", "solve", LARGE, "--json", "-o", file]
+    with subprocess.Popen(command, cwd=ROOT) as process:
+        time.sleep(2)
+        assert not file.exists()
+        process.send_signal(number)
+        assert process.wait(timeout=20) == 130
+    answer = json.loads(file.read_text())
+    assert (answer["complete"], answer["fault"]) == (False, "interrupted")
+    assert len(answer["maps"]) == answer["count"]
+    assert [path.name for path in tmp_path.iterdir()] == ["maps.json"]
+
+
+def test_count(topomap):
+    done = topomap("count", "instances/grid-3x4-paper.lp", "--planar", "--json")
+    answer = json.loads(done.stdout)
+    assert answer["complete"] is True
+    assert (answer["nodes"], answer["maps"], answer["final"]) == (1722, 1425, 507)
+    assert (answer["closed"], answer["optimal"], len(answer["per_step"])) == (3, 1, 22)
+    assert "1,722" in topomap("count", "instances/grid-3x4-paper.lp", "--planar").stdout
+
+
+def test_the_real_map_is_marked(topomap, tmp_path):
+    truth = tmp_path / "truth.json"
+    topomap("generate", "grid", "3", "3", "--route", "snake", "--truth", truth)
+    done = topomap("solve", GRID, "--optimal", "--json", "--truth", truth)
+    maps = json.loads(done.stdout)["maps"]
+    assert sorted((m["genus"], m["real"]) for m in maps) == [(0, True), (1, False)]
+    assert topomap("solve", GRID, "--optimal", "--truth", truth).stdout.count("real map") == 1
+    assert topomap("solve", LARGE, "--truth", truth).returncode == 2
+    assert topomap("solve", GRID, "--truth", GRID).returncode == 2
+
+
+BAD = {
+    "": "no facts",
+    "% only a comment": "no facts",
+    "view(0,0).": "no facts slots",
+    "slots(4). slots(6). view(0,0).": "2 facts slots",
+    "slots(5). view(0,0).": "K must be even",
+    "slots(0). view(0,0).": "K must be even",
+    "slots(four). view(0,0).": "whole number",
+    "slots(4).": "step 0: no view",
+    "slots(4). view(0,1).": "step 0: the view lacks slot 0",
+    "slots(4). view(0,0). view(0,4).": "step 0: slot 4 is not in 0..3",
+    "slots(4). view(0,0). view(1,0).": "step 1: it has no turn",
+    "slots(4). view(0,0). turn(1,0).": "step 1: no view",
+    "slots(4). view(0,0). turn(1,1). view(1,0).": "step 1: turn 1: no gateway there",
+    "slots(4). view(0,0). turn(0,0).": "step 0: a turn",
+    "slots(4). view(0,0). turn(2,0). view(2,0).": "step 1: no turn",
+    "slots(4). view(0,0;0,1). turn(1,0;1,1). view(1,0).": "not a ground fact",
+    "slots(4). view(0,0). view(0,1). turn(1,0). turn(1,1). view(1,0).": "step 1: more than one",
+    "slots(4). view(0,0). place(1).": ":1: place(1) is not a fact over",
+    "slots(4). view(0,0). view(0).": "view(0) is not a fact over",
+    "slots(4).\nview(0,0).\nview(X,0).": ":3: 'view(X,0)' is not a ground fact",
+    "slots(4). view(0,0). a :- b.": "'a :- b' is not a ground fact",
+    "slots(4). view(0,0). :- a.": "not a ground fact",
+    "slots(4). view(0,0). {view(0,1)}.": "not a ground fact",
+    "slots(4). view(0,0..1).": "not a ground fact",
+    "slots(4). view(0,0)": "does not end with a full stop",
+    '#include "/etc/passwd".': "not a ground fact",
+    "#script (python) print(1) #end.": "not a ground fact",
+    "slots(4). view(0,0). landmark(3,a).": "step 3: it has no turn",
+    "slots(4). -view(0,0).": "not a fact over",
+    'slots(4). view(0,"0").': "whole number",
+}
+
+
+@pytest.mark.parametrize("text", BAD)
+def test_bad_instances_are_refused_in_one_line(topomap, tmp_path, text):
+    file = tmp_path / "bad.lp"
+    file.write_text(text)
+    for command in (["solve"], ["count", "--json"]):
+        done = topomap(command[0], file, *command[1:])
+        assert (done.returncode, done.stdout) == (2, "")
+        assert done.stderr.startswith(f"{file}:")
+        assert done.stderr.count("\n") == 1
+        assert BAD[text] in done.stderr
+
+
+def test_files_that_cannot_be_read_or_written(topomap, tmp_path):
+    binary = tmp_path / "binary.lp"
+    binary.write_bytes(b"\xff\xfe\x00")
+    for arguments in (
+        ["solve", tmp_path / "none.lp"],
+        ["solve", tmp_path],
+        ["solve", binary],
+        ["solve", GRID, "-o", tmp_path],
+        ["solve", GRID, "-o", tmp_path / "no" / "file"],
+        ["count", GRID, "-o", "/dev/full"],
+        ["generate", "grid", "2", "2", "--route", "snake", "-o", "/dev/full"],
+        ["table", "-o", tmp_path],
+        ["table", "-o", "/proc/none/file"],
+        ["family", tmp_path / "none.txt", "-d", tmp_path],
+    ):
+        done = topomap(*arguments)
+        assert done.returncode == 2, arguments
+        assert done.stderr.strip().count("\n") == 0, done.stderr
+
+
+def test_comments_strings_and_layout_are_read(tmp_path):
+    file = tmp_path / "odd.lp"
+    file.write_text(
+        "%* a block\nview(9,9). *% slots(4)\n.view(0,0).% view(8,8).\nturn(1,0).\n"
+        'view( 1 , 0 ). landmark(1,"a. %b"). landmark(0,f(x,(1,2))).\n'
+    )
+    experience = read(file)
+    assert (experience.slots, experience.turns) == (4, (0,))
+    assert experience.landmarks == (frozenset(["f(x,(1,2))"]), frozenset(['"a. %b"']))
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        [],
+        ["fly"],
+        ["solve"],
+        ["solve", GRID, "--limit", "0"],
+        ["solve", GRID, "--limit", "x"],
+        ["solve", GRID, "--timeout", "-1"],
+        ["solve", GRID, "--bound", "0"],
+        ["solve", GRID, "--horizon", "-1"],
+        ["solve", GRID, "--spherical"],
+        ["count", GRID, GRID],
+        ["table", "--jobs", "0"],
+    ],
+)
+def test_bad_usage_is_one_line(topomap, arguments):
+    done = topomap(*arguments)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert done.stderr.count("\n") == 1
+    assert done.stderr.startswith("topomap")
+
+
+@pytest.mark.parametrize("command", ["", "generate", "solve", "count", "table", "family"])
+def test_help_has_an_example(topomap, command):
+    done = topomap(*command.split(), "--help")
+    assert done.returncode == 0
+    assert "exit status" in done.stdout
+    assert not command or "example" in done.stdout
+
+
+def test_a_closed_pipe_is_no_error():
+    command = f"{BIN}/topomap solve {GRID} | head -1"
+    done = subprocess.run(command, shell=True, capture_output=True, text=True, cwd=ROOT)
+    assert done.stdout.startswith("map 1")
+    assert not done.stderr
+
+
+def test_families(topomap, tmp_path):
+    family = tmp_path / "family.txt"
+    family.write_text("# grids\ngrid {2..3} 2 --route {snake,E}  # two by two\n\n")
+    folder = tmp_path / "made"
+    done = topomap("family", family, "-d", folder, "--json")
+    names = ["grid-2x2-snake", "grid-2x2-E", "grid-3x2-snake", "grid-3x2-E"]
+    assert json.loads(done.stdout) == {"instances": names, "complete": True}
+    before = {path: path.stat().st_mtime_ns for path in folder.iterdir()}
+    assert {path.stem for path in before} == set(names)
+    (folder / "grid-2x2-E.lp").write_text("stale")
+    family.write_text("grid 2 2 --route snake\n")
+    assert topomap("family", family, "-d", folder).stdout == "grid-2x2-snake\n"
+    (kept,) = folder.iterdir()
+    assert kept.stat().st_mtime_ns == before[kept]
+    for text, fault in (("grid 2 2", "--route"), ("grid 2 2 --route E\n" * 2, "second instance")):
+        family.write_text(text)
+        done = topomap("family", family, "-d", folder)
+        assert done.returncode == 2
+        assert fault in done.stderr

@@ -1,0 +1,119 @@
+"""The paper's numbers, by plain clingo, by our command, and by the independent search."""
+
+import json
+import re
+
+import pytest
+from conftest import COLUMNS, ROOT, Truth, answers, run
+from topomap import figure4
+from topomap.experience import read
+from topomap.solver import Watch
+
+IDS = [f"{c['environment']}{'-planar' * c['planarity']}" for c in COLUMNS]
+
+
+def grid(name):
+    return read(ROOT / "instances" / f"{name}.lp")
+
+
+@pytest.mark.parametrize(
+    ("parts", "instance", "options", "line"),
+    [
+        ("topomap", "grid-3x3-snake", "0 -q", "Models       : 88"),
+        ("topomap planar", "grid-3x3-snake", "0 -q", "Models       : 62"),
+        (
+            "topomap planar bound travelled",
+            "grid-4x4-snake",
+            "-c places=16 0 -q",
+            "Models       : 58",
+        ),
+        (
+            "topomap closed boundary minimal",
+            "grid-3x4-paper",
+            "--opt-mode=optN 0 -q",
+            "  Optimal    : 8",
+        ),
+    ],
+)
+def test_clingo_alone_prints_the_count(parts, instance, options, line):
+    files = [f"encodings/{part}.lp" for part in parts.split()]
+    done = run("clingo", *files, f"instances/{instance}.lp", *options.split())
+    assert line in done.stdout.splitlines()
+    assert done.returncode == 30
+    assert not done.stderr
+
+
+@pytest.mark.parametrize("column", COLUMNS, ids=IDS)
+def test_a_column_of_the_table(column):
+    row = figure4.row(column, Watch(quiet=True))
+    assert not figure4.differences(row)
+    assert row["per_step"] == column["expected"]["per_step"]
+    assert sum(row["per_step"]) == row["nodes"]
+
+
+@pytest.mark.parametrize("column", [c for c in COLUMNS if c["environment"] == "3x3"])
+def test_the_search_has_the_same_tree(column):
+    truth = Truth(grid(column["instance"]))
+    tree = truth.planar_levels() if column["planarity"] else truth.levels
+    assert [len(level) for level in tree] == column["expected"]["per_step"]
+
+
+def test_the_two_best_maps_of_the_3x3_grid_are_one_graph():
+    """Figure 1 b and c: the grid, and the same graph on a torus."""
+    experience = grid("grid-3x3-snake")
+    maps = [
+        experience.map_of(at)
+        for at in answers(("closed", "boundary", "minimal"), experience.facts())
+    ]
+    assert sorted(world.genus() for world in maps) == [0, 1]
+    assert len({len(world.edges()) for world in maps}) == 1
+
+
+def test_the_4x4_grid_has_over_minimal_maps():
+    """Figure 5 c and d: planar, 12 places, 6 paths, 18 links, with and without planarity."""
+    experience = grid("grid-4x4-snake")
+    best = ("closed", "boundary", "minimal")
+    found = answers(best, experience.facts())
+    assert found == answers(("planar", *best), experience.facts())
+    sizes = {
+        (len(world.stars), len(world.paths()), len(world.edges()), world.genus())
+        for world in map(experience.map_of, found)
+    }
+    assert len(found) == 2
+    assert sizes == {(12, 6, 18, 0)}
+
+
+def test_the_unique_perpendicular_map_is_the_grid(tmp_path):
+    """Figure 5 a."""
+    truth = tmp_path / "truth.json"
+    run("topomap", "generate", "grid", "4", "4", "--route", "snake", "--truth", truth)
+    solve = ["solve", "instances/grid-4x4-snake.lp", "--closed", "--perpendicular", "--planar"]
+    done = run("topomap", *solve, "--truth", truth, "--json")
+    (only,) = json.loads(done.stdout)["maps"]
+    assert only["real"] is True
+
+
+def test_table_prints_and_writes_all_of_it(tmp_path):
+    file = tmp_path / "new" / "figure4.json"
+    done = run("topomap", "table", "-o", file)
+    assert done.returncode == 0, done.stdout + done.stderr
+    written = json.loads(file.read_text())
+    assert written["complete"] is True
+    assert [(r["environment"], r["planarity"]) for r in written["rows"]] == [
+        (c["environment"], c["planarity"]) for c in COLUMNS
+    ]
+    for row, column in zip(written["rows"], COLUMNS, strict=True):
+        assert {key: row[key] for key in column["expected"]} == column["expected"]
+        assert (row["paper"], row["expected"]) == (column["paper"], column["expected"])
+    printed = re.sub(",", "", done.stdout)
+    for column in COLUMNS:
+        for figure in column["paper"].values():
+            assert re.search(rf"\b{figure}\b", printed)
+
+
+def test_a_table_that_differs_names_the_cells():
+    row = {**COLUMNS[0], **COLUMNS[0]["expected"], "closed": 7, "seconds": 0.0}
+    assert figure4.differences(row) == [
+        "3x3 without planarity: closed is 7, paper has 6",
+        "3x3 without planarity: closed is 7, expected has 6",
+    ]
