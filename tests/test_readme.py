@@ -1,0 +1,36 @@
+"""The README's commands run as written and print what it says; ``...`` stands for any text."""
+
+import os
+import re
+import subprocess
+from pathlib import Path
+
+import pytest
+from conftest import BIN, ROOT
+
+BLOCKS = re.findall(r"^```console\n(.*?)^```", (ROOT / "README.md").read_text(), re.M | re.S)
+CALLS = [
+    (call.partition("\n")[0], call.partition("\n")[2])
+    for block in BLOCKS
+    for call in re.split(r"^\$ ", block, flags=re.M)[1:]
+    if not call.startswith("make")
+]
+
+
+@pytest.mark.parametrize(("command", "expected"), CALLS, ids=[call for call, _ in CALLS])
+def test_a_command_prints_what_the_readme_says(tmp_path, command, expected):
+    for name in ("encodings", "instances"):
+        Path(tmp_path / name).symlink_to(ROOT / name)
+    done = subprocess.run(
+        ["bash", "-c", command],
+        capture_output=True,
+        text=True,
+        cwd=tmp_path,
+        env={**os.environ, "PATH": f"{BIN}:{os.environ['PATH']}"},
+    )
+    pattern = ".*".join(re.escape(text.strip("\n")) for text in expected.split("..."))
+    assert re.fullmatch(pattern, done.stdout.strip("\n"), re.DOTALL)
+
+
+def test_the_readme_has_commands():
+    assert len(CALLS) > 10
