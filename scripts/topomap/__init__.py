@@ -13,7 +13,11 @@ reads answers and compares counts.
 ``solver``          clingo on the encodings: enumeration, optimal maps
 ``statistics``      the figures of the search tree, by horizons
 ``figure4``         the paper's table beside ours
-``cli``             the command ``topomap``
+``report``          maps as JSON, and as lines to read
+``family``          files that list the instances of a batch
+``files``           output files that are whole or not there
+``commands``        what each subcommand does
+``cli``             the command ``topomap``: arguments, help, exit status
 ==================  =====================================================
 """
 

@@ -1,25 +1,15 @@
 """The command ``topomap``."""
 
 import argparse
-import json
 import os
-import shlex
 import signal
 import sys
 from collections.abc import Sequence
-from pathlib import Path
 from typing import Any, NoReturn
 
-from topomap import __version__, environment, figure4, network
-from topomap.errors import BAD_INPUT, DONE, INTERRUPTED, NO, PARTIAL, InputError
-from topomap.experience import Experience, read
-from topomap.family import expand
-from topomap.files import output
-from topomap.generate import Instance, instance
-from topomap.report import Report
-from topomap.solver import INTERRUPT, PARTS, Query, Stopped, Watch, best, hypotheses, solving
-from topomap.statistics import KEYS, tree
-from topomap.topology import TopologicalMap
+from topomap import __version__, commands
+from topomap.errors import BAD_INPUT, INTERRUPTED, PARTIAL, InputError
+from topomap.solver import PARTS, solving
 
 STATUS = """\
 exit status: 0 done; 1 the answer is no (the table differs, there is no map);
@@ -55,202 +45,6 @@ def main(arguments: Sequence[str] | None = None) -> int:
     return status
 
 
-def _generate(args: argparse.Namespace) -> int:
-    made = _instance(args)
-    if args.truth:
-        with output(args.truth) as file:
-            at = [[step, *dstate] for step, dstate in enumerate(made.truth)]
-            json.dump({"maps": [{"at": at}], "complete": True}, file)
-            file.write("\n")
-    target = args.output
-    if target and (target.endswith("/") or Path(target).is_dir()):
-        target = str(Path(target) / f"{made.name}.lp")
-    if target or not args.json:
-        with output(target) as file:
-            file.write(made.text())
-    if args.json:
-        summary = {
-            "name": made.name,
-            "file": target,
-            "header": made.header,
-            "steps": made.experience.steps,
-            "facts": None if target else made.experience.facts(),
-            "complete": True,
-        }
-        print(json.dumps(summary))
-    return DONE
-
-
-def _instance(args: argparse.Namespace) -> Instance:
-    if args.kind == "network":
-        world, warnings = network.load(args.file, args.slots, args.north)
-        for warning in warnings:
-            print(f"warning: {warning}", file=sys.stderr)
-    elif args.kind == "maze":
-        world = environment.maze(args.rows, args.columns, args.thin, args.seed or 0)
-    elif args.kind in ("hexagons", "triangles"):
-        world = environment.lattice(args.kind, args.rows, args.columns)
-    else:
-        world = environment.grid(args.rows, args.columns, args.kind)
-    if args.route == "walk" and args.steps is None:
-        raise InputError("topomap generate: --route walk needs --steps")
-    return instance(
-        world,
-        args.route,
-        steps=args.steps,
-        start=args.start,
-        facing=args.facing,
-        signs=args.signs,
-        seed=args.seed,
-        name=args.name,
-    )
-
-
-def _query(args: argparse.Namespace) -> Query:
-    parts = frozenset(part for part in PARTS if getattr(args, part))
-    return Query(parts, args.bound, args.horizon)
-
-
-def _solve(args: argparse.Namespace) -> int:
-    inputs = [(path, read(path)) for path in args.instance]
-    statuses = []
-    with output(args.output) as out:
-        if args.json and len(inputs) > 1:
-            out.write('{"results": [\n')
-        for number, (path, experience) in enumerate(inputs):
-            if len(inputs) > 1:
-                out.write(",\n" * (number > 0) if args.json else f"{path}\n")
-            truth = _truth(args.truth, experience, args.horizon) if args.truth else None
-            report = Report(out, path, experience, _query(args), truth, args.json)
-            statuses.append(_solve_one(args, experience, report))
-            if statuses[-1] == INTERRUPTED:
-                break
-        if args.json and len(inputs) > 1:
-            complete = len(statuses) == len(inputs) and max(statuses) <= NO
-            out.write(f'], "complete": {json.dumps(complete)}}}\n')
-    return max(statuses)
-
-
-def _solve_one(args: argparse.Namespace, experience: Experience, report: Report) -> int:
-    query = _query(args)
-    fault, candidate = None, None
-    with Watch(args.timeout) as watch:
-        try:
-            for found in (best if args.optimal else hypotheses)(experience, query, watch):
-                if not found.proved:
-                    candidate = found
-                elif report.count == args.limit:
-                    fault = "limit"
-                    break
-                else:
-                    report.add(found)
-        except Stopped as stopped:
-            fault = str(stopped)
-        if fault and candidate and not report.count:
-            report.add(candidate)
-        report.end(fault)
-    if fault:
-        return INTERRUPTED if fault == INTERRUPT else PARTIAL
-    return DONE if report.count else NO
-
-
-def _truth(file: str, experience: Experience, horizon: int | None) -> TopologicalMap:
-    """The real map of an experience, from a file that ``generate --truth`` wrote."""
-    try:
-        steps = json.loads(Path(file).read_text(encoding="utf-8"))["maps"][0]["at"]
-        at = tuple((place, slot) for _, place, slot in steps)
-    except OSError as error:
-        raise InputError(f"{file}: {(error.strerror or str(error)).lower()}") from None
-    except (ValueError, LookupError, TypeError):
-        raise InputError(f"{file}: not what generate --truth writes") from None
-    if len(at) != experience.steps + 1:
-        raise InputError(f"{file}: {len(at) - 1} steps, the instance has {experience.steps}")
-    return experience.map_of(at if horizon is None else at[: horizon + 1])
-
-
-def _count(args: argparse.Namespace) -> int:
-    experience = read(args.instance)
-    figures: dict[str, Any] = {}
-    fault = None
-    try:
-        with Watch(args.timeout) as watch:
-            tree(experience, _query(args), watch, figures)
-    except Stopped as stopped:
-        fault = str(stopped)
-    with output(args.output) as out:
-        if args.json:
-            answer = {"instance": args.instance, **figures, "complete": not fault, "fault": fault}
-            out.write(json.dumps(answer) + "\n")
-        else:
-            out.write("hypotheses after each step: ")
-            out.write(" ".join(map(str, figures["per_step"])) + "\n")
-            for key in KEYS:
-                known = "not counted" if figures[key] is None else f"{figures[key]:,}"
-                out.write(f"{figure4.WORDS[key]:<42}{known:>12}\n")
-            if fault:
-                out.write(f"partial: {fault}\n")
-    if fault:
-        return INTERRUPTED if fault == INTERRUPT else PARTIAL
-    return DONE if figures["final"] else NO
-
-
-def _table(args: argparse.Namespace) -> int:
-    rows: list[dict[str, Any]] = []
-    complete = True
-    with output(args.output, parents=True) as file:
-        try:
-            for row in figure4.rows(args.jobs):
-                rows.append(row)
-                print(f"counted {len(rows)} of {len(figure4.COLUMNS)} columns", file=sys.stderr)
-        except Stopped:
-            complete = False
-        rows.sort(key=lambda row: (row["environment"], row["planarity"]))
-        result = {"complete": complete, "rows": rows}
-        json.dump(result, file, indent=1)
-        file.write("\n")
-    different = [cell for row in rows for cell in figure4.differences(row)]
-    if args.json:
-        print(json.dumps(result))
-    else:
-        print(figure4.text(rows))
-        for cell in different:
-            print(f"differs: {cell}")
-        if not complete:
-            print("partial: interrupted")
-        elif not different:
-            print("Every figure is the paper's.")
-    return INTERRUPTED if not complete else NO if different else DONE
-
-
-def _family(args: argparse.Namespace) -> int:
-    folder = Path(args.directory)
-    calls: dict[str, list[str]] = {}
-    parser = _parser()
-    for line, call in expand(args.file):
-        try:
-            made = _instance(parser.parse_args(["generate", *call]))
-        except InputError as error:
-            raise InputError(f"{args.file}:{line}: {error}") from None
-        if made.name in calls:
-            raise InputError(f"{args.file}:{line}: a second instance named {made.name}")
-        calls[made.name] = call
-    folder.mkdir(parents=True, exist_ok=True)
-    for old in folder.glob("*.args"):
-        if old.stem not in calls:
-            old.unlink()
-            old.with_suffix(".lp").unlink(missing_ok=True)
-    for name, call in calls.items():
-        path = folder / f"{name}.args"
-        text = shlex.join(call) + "\n"
-        if not path.exists() or path.read_text(encoding="utf-8") != text:
-            with output(str(path)) as file:
-                file.write(text)
-    print(
-        json.dumps({"instances": list(calls), "complete": True}) if args.json else "\n".join(calls)
-    )
-    return DONE
-
-
 def _parser() -> Parser:
     parser = Parser(
         prog="topomap",
@@ -259,17 +53,17 @@ def _parser() -> Parser:
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.add_argument("--version", action="version", version=f"topomap {__version__}")
-    commands = parser.add_subparsers(metavar="COMMAND", required=True)
-    _add_generate(commands)
-    _add_solve(commands)
-    _add_count(commands)
-    _add_table(commands)
-    _add_family(commands)
+    group = parser.add_subparsers(metavar="COMMAND", required=True)
+    _add_generate(group)
+    _add_solve(group)
+    _add_count(group)
+    _add_table(group)
+    _add_family(group)
     return parser
 
 
-def _command(commands: Any, name: str, run: Any, help: str, example: str) -> Parser:
-    command: Parser = commands.add_parser(
+def _command(group: Any, name: str, run: Any, help: str, example: str) -> Parser:
+    command: Parser = group.add_parser(
         name,
         help=help,
         description=help[0].upper() + help[1:] + ".",
@@ -304,11 +98,11 @@ def _rate(text: str) -> float:
     return value
 
 
-def _add_generate(commands: Any) -> None:
+def _add_generate(group: Any) -> None:
     command = _command(
-        commands,
+        group,
         "generate",
-        _generate,
+        commands.generate,
         "explore an environment and write what is seen as an instance",
         """\
   topomap generate grid 3 4 --route snake -o grid-3x4-snake.lp
@@ -395,11 +189,11 @@ def _add_query(command: Parser) -> None:
     command.add_argument("-o", "--output", metavar="FILE", help="file to write (default: stdout)")
 
 
-def _add_solve(commands: Any) -> None:
+def _add_solve(group: Any) -> None:
     command = _command(
-        commands,
+        group,
         "solve",
-        _solve,
+        commands.solve,
         "enumerate the maps that are consistent with an exploration",
         """\
   topomap solve instances/grid-3x3-snake.lp --planar --closed
@@ -421,11 +215,11 @@ def _add_solve(commands: Any) -> None:
     _add_query(command)
 
 
-def _add_count(commands: Any) -> None:
+def _add_count(group: Any) -> None:
     command = _command(
-        commands,
+        group,
         "count",
-        _count,
+        commands.count,
         "count the search tree of an exploration, as the paper's Figure 4 does",
         "  topomap count instances/grid-4x4-snake.lp --planar --bound 16",
     )
@@ -433,11 +227,11 @@ def _add_count(commands: Any) -> None:
     _add_query(command)
 
 
-def _add_table(commands: Any) -> None:
+def _add_table(group: Any) -> None:
     command = _command(
-        commands,
+        group,
         "table",
-        _table,
+        commands.table,
         "print the paper's Figure 4 beside ours, and write it as JSON",
         "  topomap table",
     )
@@ -457,14 +251,15 @@ def _add_table(commands: Any) -> None:
     )
 
 
-def _add_family(commands: Any) -> None:
+def _add_family(group: Any) -> None:
     command = _command(
-        commands,
+        group,
         "family",
-        _family,
+        commands.family,
         "name the instances of a family file, and write the call of each where it changed",
         "  topomap family instances/batch.txt -d build/instances",
     )
+    command.set_defaults(parse=lambda words: _parser().parse_args(words))
     command.add_argument("file", metavar="FAMILY")
     command.add_argument(
         "-d",

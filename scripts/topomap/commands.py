@@ -1,0 +1,220 @@
+"""What each subcommand of ``topomap`` does, and the exit status it ends with."""
+
+import argparse
+import json
+import shlex
+import sys
+from pathlib import Path
+from typing import Any
+
+from topomap import environment, figure4, network
+from topomap.errors import DONE, INTERRUPTED, NO, PARTIAL, InputError
+from topomap.experience import Experience, read
+from topomap.family import expand
+from topomap.files import output
+from topomap.generate import Instance, instance
+from topomap.report import Report
+from topomap.solver import INTERRUPT, PARTS, Query, Stopped, Watch, best, hypotheses
+from topomap.statistics import KEYS, tree
+from topomap.topology import TopologicalMap
+
+
+def generate(args: argparse.Namespace) -> int:
+    """Explore an environment and write the instance."""
+    made = _instance(args)
+    if args.truth:
+        with output(args.truth) as file:
+            at = [[step, *dstate] for step, dstate in enumerate(made.truth)]
+            json.dump({"maps": [{"at": at}], "complete": True}, file)
+            file.write("\n")
+    target = args.output
+    if target and (target.endswith("/") or Path(target).is_dir()):
+        target = str(Path(target) / f"{made.name}.lp")
+    if target or not args.json:
+        with output(target) as file:
+            file.write(made.text())
+    if args.json:
+        summary = {
+            "name": made.name,
+            "file": target,
+            "header": made.header,
+            "steps": made.experience.steps,
+            "facts": None if target else made.experience.facts(),
+            "complete": True,
+        }
+        print(json.dumps(summary))
+    return DONE
+
+
+def _instance(args: argparse.Namespace) -> Instance:
+    if args.kind == "network":
+        world, warnings = network.load(args.file, args.slots, args.north)
+        for warning in warnings:
+            print(f"warning: {warning}", file=sys.stderr)
+    elif args.kind == "maze":
+        world = environment.maze(args.rows, args.columns, args.thin, args.seed or 0)
+    elif args.kind in ("hexagons", "triangles"):
+        world = environment.lattice(args.kind, args.rows, args.columns)
+    else:
+        world = environment.grid(args.rows, args.columns, args.kind)
+    if args.route == "walk" and args.steps is None:
+        raise InputError("topomap generate: --route walk needs --steps")
+    return instance(
+        world,
+        args.route,
+        steps=args.steps,
+        start=args.start,
+        facing=args.facing,
+        signs=args.signs,
+        seed=args.seed,
+        name=args.name,
+    )
+
+
+def _query(args: argparse.Namespace) -> Query:
+    parts = frozenset(part for part in PARTS if getattr(args, part))
+    return Query(parts, args.bound, args.horizon)
+
+
+def solve(args: argparse.Namespace) -> int:
+    """Enumerate the maps of each instance."""
+    inputs = [(path, read(path)) for path in args.instance]
+    statuses = []
+    with output(args.output) as out:
+        if args.json and len(inputs) > 1:
+            out.write('{"results": [\n')
+        for number, (path, experience) in enumerate(inputs):
+            if len(inputs) > 1:
+                out.write(",\n" * (number > 0) if args.json else f"{path}\n")
+            truth = _truth(args.truth, experience, args.horizon) if args.truth else None
+            report = Report(out, path, experience, _query(args), truth, args.json)
+            statuses.append(_solve_one(args, experience, report))
+            if statuses[-1] == INTERRUPTED:
+                break
+        if args.json and len(inputs) > 1:
+            complete = len(statuses) == len(inputs) and max(statuses) <= NO
+            out.write(f'], "complete": {json.dumps(complete)}}}\n')
+    return max(statuses)
+
+
+def _solve_one(args: argparse.Namespace, experience: Experience, report: Report) -> int:
+    query = _query(args)
+    fault, candidate = None, None
+    with Watch(args.timeout) as watch:
+        try:
+            for found in (best if args.optimal else hypotheses)(experience, query, watch):
+                if not found.proved:
+                    candidate = found
+                elif report.count == args.limit:
+                    fault = "limit"
+                    break
+                else:
+                    report.add(found)
+        except Stopped as stopped:
+            fault = str(stopped)
+        if fault and candidate and not report.count:
+            report.add(candidate)
+        report.end(fault)
+    if fault:
+        return INTERRUPTED if fault == INTERRUPT else PARTIAL
+    return DONE if report.count else NO
+
+
+def _truth(file: str, experience: Experience, horizon: int | None) -> TopologicalMap:
+    """The real map of an experience, from a file that ``generate --truth`` wrote."""
+    try:
+        steps = json.loads(Path(file).read_text(encoding="utf-8"))["maps"][0]["at"]
+        at = tuple((place, slot) for _, place, slot in steps)
+    except OSError as error:
+        raise InputError(f"{file}: {(error.strerror or str(error)).lower()}") from None
+    except (ValueError, LookupError, TypeError):
+        raise InputError(f"{file}: not what generate --truth writes") from None
+    if len(at) != experience.steps + 1:
+        raise InputError(f"{file}: {len(at) - 1} steps, the instance has {experience.steps}")
+    return experience.map_of(at if horizon is None else at[: horizon + 1])
+
+
+def count(args: argparse.Namespace) -> int:
+    """Count the search tree of an instance."""
+    experience = read(args.instance)
+    figures: dict[str, Any] = {}
+    fault = None
+    try:
+        with Watch(args.timeout) as watch:
+            tree(experience, _query(args), watch, figures)
+    except Stopped as stopped:
+        fault = str(stopped)
+    with output(args.output) as out:
+        if args.json:
+            answer = {"instance": args.instance, **figures, "complete": not fault, "fault": fault}
+            out.write(json.dumps(answer) + "\n")
+        else:
+            out.write("hypotheses after each step: ")
+            out.write(" ".join(map(str, figures["per_step"])) + "\n")
+            for key in KEYS:
+                known = "not counted" if figures[key] is None else f"{figures[key]:,}"
+                out.write(f"{figure4.WORDS[key]:<42}{known:>12}\n")
+            if fault:
+                out.write(f"partial: {fault}\n")
+    if fault:
+        return INTERRUPTED if fault == INTERRUPT else PARTIAL
+    return DONE if figures["final"] else NO
+
+
+def table(args: argparse.Namespace) -> int:
+    """Count the paper's table, print it and write it as JSON."""
+    rows: list[dict[str, Any]] = []
+    complete = True
+    with output(args.output, parents=True) as file:
+        try:
+            for row in figure4.rows(args.jobs):
+                rows.append(row)
+                print(f"counted {len(rows)} of {len(figure4.COLUMNS)} columns", file=sys.stderr)
+        except Stopped:
+            complete = False
+        rows.sort(key=lambda row: (row["environment"], row["planarity"]))
+        result = {"complete": complete, "rows": rows}
+        json.dump(result, file, indent=1)
+        file.write("\n")
+    different = [cell for row in rows for cell in figure4.differences(row)]
+    if args.json:
+        print(json.dumps(result))
+    else:
+        print(figure4.text(rows))
+        for cell in different:
+            print(f"differs: {cell}")
+        if not complete:
+            print("partial: interrupted")
+        elif not different:
+            print("Every figure is the paper's.")
+    return INTERRUPTED if not complete else NO if different else DONE
+
+
+def family(args: argparse.Namespace) -> int:
+    """Write the call of each instance of a family where it changed, and drop what is no
+    longer listed."""
+    folder = Path(args.directory)
+    calls: dict[str, list[str]] = {}
+    for line, call in expand(args.file):
+        try:
+            made = _instance(args.parse(["generate", *call]))
+        except InputError as error:
+            raise InputError(f"{args.file}:{line}: {error}") from None
+        if made.name in calls:
+            raise InputError(f"{args.file}:{line}: a second instance named {made.name}")
+        calls[made.name] = call
+    folder.mkdir(parents=True, exist_ok=True)
+    for old in folder.glob("*.args"):
+        if old.stem not in calls:
+            old.unlink()
+            old.with_suffix(".lp").unlink(missing_ok=True)
+    for name, call in calls.items():
+        path = folder / f"{name}.args"
+        text = shlex.join(call) + "\n"
+        if not path.exists() or path.read_text(encoding="utf-8") != text:
+            with output(str(path)) as file:
+                file.write(text)
+    print(
+        json.dumps({"instances": list(calls), "complete": True}) if args.json else "\n".join(calls)
+    )
+    return DONE
