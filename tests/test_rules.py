@@ -7,6 +7,10 @@ from functools import cache
 
 import pytest
 from clingo import ast
+from clintest.assertion import SupersetOf
+from clintest.quantifier import Any
+from clintest.solver import Clingo
+from clintest.test import Assert
 from conftest import ENCODINGS, PARTS, THEORY, Truth, answers
 from topomap.experience import Experience
 from worlds import random_experience
@@ -28,8 +32,11 @@ def marked(experience, *steps):
 def admits(parts, experience, at, *arguments):
     """Whether the hypothesis ``at``, written "place.gateway ...", is an answer."""
     dstates = [dstate.split(".") for dstate in at.split()]
-    fixed = "".join(f":- not at({t},{p},{s}).\n" for t, (p, s) in enumerate(dstates))
-    return bool(answers(parts, experience.facts() + fixed, *arguments))
+    wanted = {f"at({step},{place},{slot})" for step, (place, slot) in enumerate(dstates)}
+    files = [str(ENCODINGS / f"{part}.lp") for part in ("topomap", *parts)]
+    test = Assert(Any(), SupersetOf(wanted))
+    Clingo(["0", *arguments], experience.facts(), files).solve(test)
+    return test.outcome().current_value()
 
 
 CORRIDOR = seen("0", "0: 0 2", "2: 0", "0: 0 2")

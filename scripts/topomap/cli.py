@@ -4,12 +4,12 @@ import argparse
 import os
 import signal
 import sys
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import Any, NoReturn
 
 from topomap import __version__, commands
 from topomap.errors import BAD_INPUT, INTERRUPTED, PARTIAL, InputError
-from topomap.solver import PARTS, solving
+from topomap.solver import OPTIMIZING, PARTS, solving
 
 STATUS = """\
 exit status: 0 done; 1 the answer is no (the table differs, there is no map);
@@ -177,9 +177,9 @@ def _add_generate(group: Any) -> None:
     )
 
 
-def _add_query(command: Parser) -> None:
-    for part, help in PARTS.items():
-        command.add_argument(f"--{part}", action="store_true", help=help)
+def _add_query(command: Parser, parts: Iterable[str]) -> None:
+    for part in parts:
+        command.add_argument(f"--{part}", action="store_true", help=PARTS[part])
     command.add_argument("--bound", type=_at_least(1), metavar="B", help="at most B places")
     command.add_argument(
         "--horizon", type=_at_least(0), metavar="T", help="cut the experience after step T"
@@ -212,7 +212,7 @@ def _add_solve(group: Any) -> None:
         metavar="FILE",
         help="mark the maps that are the real one (from generate --truth)",
     )
-    _add_query(command)
+    _add_query(command, PARTS)
 
 
 def _add_count(group: Any) -> None:
@@ -224,7 +224,7 @@ def _add_count(group: Any) -> None:
         "  topomap count instances/grid-4x4-snake.lp --planar --bound 16",
     )
     command.add_argument("instance", metavar="INSTANCE")
-    _add_query(command)
+    _add_query(command, [part for part in PARTS if part not in OPTIMIZING])
 
 
 def _add_table(group: Any) -> None:

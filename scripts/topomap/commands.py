@@ -72,7 +72,7 @@ def _instance(args: argparse.Namespace) -> Instance:
 
 
 def _query(args: argparse.Namespace) -> Query:
-    parts = frozenset(part for part in PARTS if getattr(args, part))
+    parts = frozenset(part for part in PARTS if getattr(args, part, False))
     return Query(parts, args.bound, args.horizon)
 
 

@@ -34,7 +34,6 @@ PARTS = {
 }
 OPTIMIZING = {"genus", "minimal"}
 
-At = tuple[DState, ...]
 Answer = TypeVar("Answer")
 SOLVER = "clingo"
 INTERRUPT = "interrupted"
