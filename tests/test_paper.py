@@ -43,7 +43,7 @@ def test_clingo_alone_prints_the_count(parts, instance, options, line):
     assert not done.stderr
 
 
-@pytest.mark.parametrize("column", COLUMNS, ids=IDS)
+@pytest.mark.parametrize("column", COLUMNS[:4], ids=IDS[:4])
 def test_a_column_of_the_table(column):
     row = figure4.row(column, Watch(quiet=True))
     assert not figure4.differences(row)
