@@ -44,9 +44,21 @@ def test_a_two_way_pair_is_one_way_and_loops_go(tmp_path):
     made, warnings = load(write(tmp_path, graph), 4, 0)
     assert len(made.map.edges()) == 4
     assert "z" not in made.map.stars
-    assert any("1 loops" in warning for warning in warnings)
+    assert [warning.partition(": ")[2] for warning in warnings] == [
+        "loops left out: 1",
+        "places without a way left out: 1",
+    ]
     undirected = write(tmp_path, square(nx.Graph))
     assert load(undirected, 4, 0)[0].map == made.map
+
+
+def test_parallel_ways_and_parts_are_told(tmp_path):
+    graph = square()
+    graph.add_edge("a", "b")
+    with pytest.raises(InputError, match=r"place a: the ways to b and b .* straight"):
+        load(write(tmp_path, graph), 4, 0)
+    apart = nx.disjoint_union(square(), square(scale=70))
+    assert "not connected" in load(write(tmp_path, apart), 4, 0)[1][0]
 
 
 def test_degrees_are_scaled_by_the_latitude(tmp_path):

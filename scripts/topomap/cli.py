@@ -1,6 +1,7 @@
 """The command ``topomap``."""
 
 import argparse
+import math
 import os
 import signal
 import sys
@@ -74,28 +75,21 @@ def _command(group: Any, name: str, run: Any, help: str, example: str) -> Parser
     return command
 
 
-def _at_least(least: int) -> Any:
-    def number(text: str) -> int:
-        value = int(text)
-        if value < least:
-            raise argparse.ArgumentTypeError(f"{text} is less than {least}")
+def _number(kind: type, least: float, most: float = math.inf) -> Any:
+    """An argument type: a finite number between bounds, with a plain word on what is not."""
+
+    def number(text: str) -> Any:
+        try:
+            value = kind(text)
+        except ValueError:
+            value = math.nan
+        if not (least <= value <= most and value < math.inf):
+            bounds = f"{least} or more" if most == math.inf else f"from {least} to {most}"
+            noun = "a whole number" if kind is int else "a number"
+            raise argparse.ArgumentTypeError(f"{text!r} is not {noun}, {bounds}")
         return value
 
     return number
-
-
-def _seconds(text: str) -> float:
-    value = float(text)
-    if not 0 < value < float("inf"):
-        raise argparse.ArgumentTypeError(f"{text} is not a positive number of seconds")
-    return value
-
-
-def _rate(text: str) -> float:
-    value = float(text)
-    if not 0 <= value <= 1:
-        raise argparse.ArgumentTypeError(f"{text} is not between 0 and 1")
-    return value
 
 
 def _add_generate(group: Any) -> None:
@@ -118,7 +112,7 @@ def _add_generate(group: Any) -> None:
         help="snake; walk (random); tour (over every way); compass letters such as ESSENN "
         "(4 slots; with 8, apart by commas: N,NE,E); or absolute slots: 0,3,1",
     )
-    add("--steps", type=_at_least(0), metavar="N", help="cut the route after N steps")
+    add("--steps", type=_number(int, 0), metavar="N", help="cut the route after N steps")
     add("--start", metavar="PLACE", help="first place, such as 0,2 (default: the smallest)")
     add(
         "--facing",
@@ -128,7 +122,7 @@ def _add_generate(group: Any) -> None:
     )
     add(
         "--signs",
-        type=_rate,
+        type=_number(float, 0, 1),
         default=0.0,
         metavar="RATE",
         help="share of places that carry their own name as a landmark",
@@ -147,23 +141,30 @@ def _add_generate(group: Any) -> None:
         ("hexagons", "the corners of a sheet of hexagons, six slots"),
         ("triangles", "a triangular lattice, six slots"),
     ):
-        sub = kinds.add_parser(kind, parents=[common], help=help, description=help)
-        sub.add_argument("rows", type=_at_least(1))
-        sub.add_argument("columns", type=_at_least(1))
+        sub = _environment(kinds, kind, common, help, f"{kind} 3 4 --route tour")
+        of = "of hexagons" if kind == "hexagons" else "of places"
+        if kind == "triangles":
+            of = "of triangles, as networkx counts them"
+        sub.add_argument("rows", type=_number(int, 1), help=f"rows {of}")
+        sub.add_argument("columns", type=_number(int, 1), help=f"columns {of}")
         if kind == "maze":
             sub.add_argument(
                 "--thin",
-                type=_rate,
+                type=_number(float, 0, 1),
                 default=0.3,
                 metavar="RATE",
                 help="share of the ways to take away (default: %(default)s)",
             )
-    help = "a street or corridor network with coordinates"
-    sub = kinds.add_parser("network", parents=[common], help=help, description=help)
+    help = (
+        "a street or corridor network with coordinates: ways are straight lines between "
+        "their ends, and two-way; loops are left out"
+    )
+    example = "network city.graphml --slots 4 --north 29 --route tour"
+    sub = _environment(kinds, "network", common, help, example)
     sub.add_argument("file", metavar="FILE.graphml")
     sub.add_argument(
         "--slots",
-        type=_at_least(2),
+        type=_number(int, 2),
         default=4,
         metavar="K",
         help="directions at a place, even (default: %(default)s)",
@@ -177,16 +178,27 @@ def _add_generate(group: Any) -> None:
     )
 
 
-def _add_query(command: Parser, parts: Iterable[str]) -> None:
-    for part in parts:
-        command.add_argument(f"--{part}", action="store_true", help=PARTS[part])
-    command.add_argument("--bound", type=_at_least(1), metavar="B", help="at most B places")
-    command.add_argument(
-        "--horizon", type=_at_least(0), metavar="T", help="cut the experience after step T"
+def _environment(kinds: Any, kind: str, common: Parser, help: str, example: str) -> Parser:
+    added: Parser = kinds.add_parser(
+        kind,
+        parents=[common],
+        help=help,
+        description=help,
+        epilog=f"example:\n  topomap generate {example}",
+        formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    command.add_argument("--timeout", type=_seconds, metavar="S", help="stop after S seconds")
-    command.add_argument("--json", action="store_true", help="write JSON")
-    command.add_argument("-o", "--output", metavar="FILE", help="file to write (default: stdout)")
+    return added
+
+
+def _add_query(command: Parser, parts: Iterable[str]) -> None:
+    add = command.add_argument
+    for part in parts:
+        add(f"--{part}", action="store_true", help=PARTS[part])
+    add("--bound", type=_number(int, 1), metavar="B", help="at most B places")
+    add("--horizon", type=_number(int, 0), metavar="T", help="cut the experience after step T")
+    add("--timeout", type=_number(float, 0.001), metavar="S", help="stop after S seconds")
+    add("--json", action="store_true", help="write JSON")
+    add("-o", "--output", metavar="FILE", help="file to write (default: stdout)")
 
 
 def _add_solve(group: Any) -> None:
@@ -206,7 +218,7 @@ def _add_solve(group: Any) -> None:
         help="closed maps with consistent boundaries, fewest paths and places; "
         "if there is none, the best so far: pending gateways allowed",
     )
-    command.add_argument("--limit", type=_at_least(1), metavar="N", help="stop after N maps")
+    command.add_argument("--limit", type=_number(int, 1), metavar="N", help="stop after N maps")
     command.add_argument(
         "--truth",
         metavar="FILE",
@@ -237,7 +249,7 @@ def _add_table(group: Any) -> None:
     )
     command.add_argument(
         "--jobs",
-        type=_at_least(1),
+        type=_number(int, 1),
         metavar="N",
         help="columns counted at a time (default: one a processor)",
     )
@@ -269,8 +281,3 @@ def _add_family(group: Any) -> None:
         help="folder for NAME.args; files of instances no longer listed go",
     )
     command.add_argument("--json", action="store_true", help="print JSON")
-
-
-def run() -> None:
-    """Entry point of the command."""
-    sys.exit(main())

@@ -87,7 +87,8 @@ def solve(args: argparse.Namespace) -> int:
             if len(inputs) > 1:
                 out.write(",\n" * (number > 0) if args.json else f"{path}\n")
             truth = _truth(args.truth, experience, args.horizon) if args.truth else None
-            report = Report(out, path, experience, _query(args), truth, args.json)
+            kind = "optimal" if args.optimal else None
+            report = Report(out, path, experience, _query(args), kind, truth, args.json)
             statuses.append(_solve_one(args, experience, report))
             if statuses[-1] == INTERRUPTED:
                 break
@@ -164,50 +165,67 @@ def count(args: argparse.Namespace) -> int:
 def table(args: argparse.Namespace) -> int:
     """Count the paper's table, print it and write it as JSON."""
     rows: list[dict[str, Any]] = []
-    complete = True
     with output(args.output, parents=True) as file:
         try:
             for row in figure4.rows(args.jobs):
                 rows.append(row)
                 print(f"counted {len(rows)} of {len(figure4.COLUMNS)} columns", file=sys.stderr)
         except Stopped:
-            complete = False
-        rows.sort(key=lambda row: (row["environment"], row["planarity"]))
-        result = {"complete": complete, "rows": rows}
+            _show_table(args, rows, complete=False)
+            raise KeyboardInterrupt from None  # the file keeps an older, complete table
+        result = _show_table(args, rows, complete=True)
         json.dump(result, file, indent=1)
         file.write("\n")
+    return NO if any(map(figure4.differences, rows)) else DONE
+
+
+def _show_table(
+    args: argparse.Namespace, rows: list[dict[str, Any]], complete: bool
+) -> dict[str, Any]:
+    rows.sort(key=lambda row: (row["environment"], row["planarity"]))
+    result = {"complete": complete, "rows": rows}
     different = [cell for row in rows for cell in figure4.differences(row)]
     if args.json:
         print(json.dumps(result))
-    else:
+        return result
+    if rows:
         print(figure4.text(rows))
-        for cell in different:
-            print(f"differs: {cell}")
-        if not complete:
-            print("partial: interrupted")
-        elif not different:
-            print("Every figure is the paper's.")
-    return INTERRUPTED if not complete else NO if different else DONE
+    for cell in different:
+        print(f"differs: {cell}")
+    if not complete:
+        print(f"partial: {len(rows)} of {len(figure4.COLUMNS)} columns")
+    elif not different:
+        print("Every figure is the paper's.")
+    return result
 
 
 def family(args: argparse.Namespace) -> int:
     """Write the call of each instance of a family where it changed, and drop what is no
-    longer listed."""
+    longer listed of what the last call made."""
     folder = Path(args.directory)
     calls: dict[str, list[str]] = {}
     for line, call in expand(args.file):
         try:
-            made = _instance(args.parse(["generate", *call]))
+            parsed = args.parse(["generate", *call])
+            if parsed.output or parsed.truth or parsed.json:
+                raise InputError("-o, --truth and --json have no place in a family")
+            made = _instance(parsed)
         except InputError as error:
             raise InputError(f"{args.file}:{line}: {error}") from None
         if made.name in calls:
-            raise InputError(f"{args.file}:{line}: a second instance named {made.name}")
+            raise InputError(
+                f"{args.file}:{line}: a second instance named {made.name}; --name can part them"
+            )
         calls[made.name] = call
     folder.mkdir(parents=True, exist_ok=True)
-    for old in folder.glob("*.args"):
-        if old.stem not in calls:
-            old.unlink()
-            old.with_suffix(".lp").unlink(missing_ok=True)
+    made_before = folder / ".family"
+    if made_before.exists():
+        for name in made_before.read_text(encoding="utf-8").splitlines():
+            if name not in calls:
+                (folder / f"{name}.args").unlink(missing_ok=True)
+                (folder / f"{name}.lp").unlink(missing_ok=True)
+    with output(str(made_before)) as file:
+        file.writelines(f"{name}\n" for name in calls)
     for name, call in calls.items():
         path = folder / f"{name}.args"
         text = shlex.join(call) + "\n"

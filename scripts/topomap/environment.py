@@ -146,10 +146,13 @@ def by_bearing(
         ends = (here, slot), (there, (slot + slots // 2) % slots)
         for end, other in (ends, ends[::-1]):
             if end in links:
+                first, second = links[end][0], other[0]
+                hint = "another --slots or --north may part them"
+                if first == second:
+                    hint = "both are taken to be straight, so nothing parts them"
                 raise InputError(
-                    f"place {label(end[0])}: the ways to {label(links[end][0])} and "
-                    f"{label(other[0])} fall into one slot, {end[1]} of {slots}; "
-                    "another --slots or --north may part them"
+                    f"place {label(end[0])}: the ways to {label(first)} and {label(second)} "
+                    f"fall into one slot, {end[1]} of {slots}; {hint}"
                 )
         _link(links, *ends)
     return world(slots, links)

@@ -74,7 +74,7 @@ def instance(
         call += ["--steps", str(steps)]
     if start is not None:
         call += ["--start", start]
-        parts += ["from" + start.replace(",", "-")]
+        parts += ["from" + _word(start)]
     if facing != (taken[0] if taken else None):
         call += ["--facing", str(facing)]
         parts += [f"facing{facing}"]
@@ -90,15 +90,15 @@ def instance(
 
     header = [
         title,
-        f"environment: {environment.name}, {len(world.stars)} places, "
-        f"{len(world.links) // 2} ways, {world.slots} slots",
+        f"environment: {environment.name} (places {len(world.stars)}, "
+        f"ways {len(world.links) // 2}, slots {world.slots})",
         *environment.notes,
-        f"exploration: {route}, {len(taken)} steps from place {label(first)}",
+        f"exploration: {route} from place {label(first)} (steps {len(taken)})",
     ]
     if signs:
         header.append(
-            f"signs: at {len(environment.map.landmarks)} of {len(world.stars)} places, "
-            f"{100 * signs:g} %, seed {seed or 0}"
+            f"signs: {100 * signs:g} % of the places "
+            f"({len(environment.map.landmarks)} of {len(world.stars)}), seed {seed or 0}"
         )
     fault = world.path_axiom_fault()
     if fault:
@@ -111,7 +111,12 @@ def _part(route: str, taken: int, steps: int | None) -> str:
     """A route's part of an instance's name."""
     if route in ("tour", "walk"):
         return f"{route}{taken}"
-    word = re.sub(r"[^0-9A-Za-z]+", "-", route).strip("-")
+    word = _word(route)
     if len(word) > 40:
         word = f"{word[:31]}-{zlib.crc32(route.encode()):08x}"
     return word if steps is None else f"{word}{taken}"
+
+
+def _word(text: str) -> str:
+    """A text as a part of a file's name."""
+    return re.sub(r"[^0-9A-Za-z]+", "-", text).strip("-")

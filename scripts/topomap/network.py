@@ -29,10 +29,15 @@ def load(file: str | Path, slots: int, north: float) -> tuple[Environment, list[
     loops = list(nx.selfloop_edges(graph))
     graph.remove_edges_from(loops)
     lone = list(nx.isolates(graph))
+    parts = nx.number_connected_components(nx.Graph(graph)) - len(lone)
     warnings = [
-        f"{file}: left out {len(things)} {what}"
-        for things, what in ((loops, "loops"), (lone, "places without a way"))
-        if things
+        f"{file}: {what}: {number}"
+        for what, number in (
+            ("loops left out", len(loops)),
+            ("places without a way left out", len(lone)),
+            ("not connected; an exploration stays in its part, of", parts if parts > 1 else 0),
+        )
+        if number
     ]
     ways = _ways(graph)
     if not ways:

@@ -31,10 +31,9 @@ def map_json(experience: Experience, found: Found) -> dict[str, Any]:
 def map_line(experience: Experience, found: Found) -> str:
     """A hypothesis in one line: its size, and the dstate after each step."""
     world = experience.map_of(found.at)
-    pending = len(world.pending())
     return (
-        f"{len(world.stars)} places, {len(world.edges())} links, {len(world.paths())} paths, "
-        f"genus {world.genus()}, {f'{pending} gateways pending' if pending else 'closed'}: "
+        f"places {len(world.stars)}, links {len(world.edges())}, paths {len(world.paths())}, "
+        f"genus {world.genus()}, pending {len(world.pending())}: "
         + " ".join(f"{place}.{slot}" for place, slot in found.at)
     )
 
@@ -48,19 +47,21 @@ class Report:
         instance: str,
         experience: Experience,
         query: Query,
+        kind: str | None,
         truth: TopologicalMap | None,
         as_json: bool,
     ):
         self.out, self.as_json = out, as_json
         self.experience, self.truth = experience, truth
-        self.count = 0
-        self.last = Found((), "best" if query.optimizes else "consistent")
+        self.count = self.real = 0
+        self.last = Found((), kind or ("best" if query.optimizes else "consistent"))
         if as_json:
             head = {
                 "instance": instance,
                 "parts": sorted(query.parts),
                 "bound": query.places,
                 "horizon": query.horizon,
+                "optimal": kind is not None,
             }
             out.write(json.dumps(head)[:-1] + ', "maps": [')
 
@@ -68,7 +69,10 @@ class Report:
         """Write one map."""
         self.count += 1
         self.last = found
-        real = self.truth and self.experience.map_of(found.at).isomorphic(self.truth)
+        real = False
+        if self.truth:
+            real = self.experience.map_of(found.at).isomorphic(self.truth)
+            self.real += real
         if self.as_json:
             answer = map_json(self.experience, found)
             if self.truth:
@@ -93,4 +97,6 @@ class Report:
             line += f", cost {' '.join(map(str, self.last.cost))}"
         if not self.last.proved:
             line += ", not proved to be best"
+        if self.truth and not self.real:
+            line += ", the real map is not among them"
         self.out.write(line + (f"; partial: {fault}\n" if fault else "\n"))
