@@ -1,10 +1,13 @@
 """Worlds from street networks in GraphML."""
 
+import os
+
 import networkx as nx
 import pytest
 from conftest import SHARED, run
 from topomap.environment import grid
 from topomap.errors import InputError
+from topomap.experience import parse
 from topomap.network import load
 
 
@@ -16,7 +19,7 @@ def write(tmp_path, graph):
 
 def square(kind=nx.MultiDiGraph, scale=100.0, x="x", y="y", **attributes):
     """Four crossings in a square, a (south-west) b c d clockwise."""
-    graph = kind(**attributes)
+    graph = kind(**{"crs": "+proj=utm +zone=18", **attributes})
     for name, east, north in (("a", 0, 0), ("b", 0, 1), ("c", 1, 1), ("d", 1, 0)):
         graph.add_node(name, **{x: east * scale, y: north * scale})
     for one, two in ("ab", "bc", "cd", "da"):
@@ -50,6 +53,57 @@ def test_a_two_way_pair_is_one_way_and_loops_go(tmp_path):
     ]
     undirected = write(tmp_path, square(nx.Graph))
     assert load(undirected, 4, 0)[0].map == made.map
+
+
+def test_without_a_crs_the_guess_is_told(tmp_path):
+    file = write(tmp_path, square(crs=""))
+    graph = nx.read_graphml(file)
+    del graph.graph["crs"]
+    (warning,) = load(write(tmp_path, graph), 4, 0)[1]
+    assert "no crs" in warning
+
+
+@pytest.mark.parametrize("crs", ["epsg:4269", "EPSG:4326", "+proj=longlat +datum=WGS84"])
+def test_geographic_coordinates_are_known_by_their_crs(tmp_path, crs):
+    graph = nx.DiGraph(crs=crs)
+    graph.add_node("a", x=20.0, y=60.0)
+    graph.add_node("b", x=20.01, y=60.005)
+    graph.add_edge("a", "b")
+    assert load(write(tmp_path, graph), 16, 0)[0].map.stars["a"] == {2}
+
+
+def test_a_tour_of_a_part_is_always_the_same(tmp_path):
+    large = nx.convert_node_labels_to_integers(nx.grid_2d_graph(5, 8))
+    for node, data in large.nodes.items():
+        data.update(x=200.0 + 10 * (node % 8), y=10.0 * (node // 8))
+    both = nx.disjoint_union(square(nx.Graph, scale=10.0), large)
+    both.graph["crs"] = "+proj=utm +zone=18"
+    file = write(tmp_path, both)
+    outputs = {
+        run(
+            "topomap",
+            "generate",
+            "network",
+            file,
+            "--route",
+            "tour",
+            env={**os.environ, "PYTHONHASHSEED": seed},
+        ).stdout
+        for seed in "012"
+    }
+    assert len(outputs) == 1
+    assert "steps 4" in outputs.pop()
+
+
+def test_headers_hold_no_facts(tmp_path):
+    graph = square(created_with="OSMnx 1\nslots(6).", created_date="2020\nview(0,5).")
+    done = run("topomap", "generate", "network", write(tmp_path, graph), "--route", "tour")
+    assert done.returncode == 0
+    assert done.stdout.count("slots(") == 2
+    parse(done.stdout, "made")
+    done = run("topomap", "generate", "grid", "2", "2", "--route", "E", "--name", "a\nslots(6).")
+    assert done.returncode == 2
+    assert "letters, digits" in done.stderr
 
 
 def test_parallel_ways_and_parts_are_told(tmp_path):

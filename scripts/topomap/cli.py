@@ -10,6 +10,7 @@ from typing import Any, NoReturn
 
 from topomap import __version__, commands
 from topomap.errors import BAD_INPUT, INTERRUPTED, PARTIAL, InputError
+from topomap.experience import LARGEST
 from topomap.solver import OPTIMIZING, PARTS, solving
 
 STATUS = """\
@@ -50,7 +51,7 @@ def _parser() -> Parser:
     parser = Parser(
         prog="topomap",
         description="Exact topological map-building: every map consistent with an exploration.",
-        epilog=STATUS,
+        epilog=f"example:\n  topomap solve instances/grid-3x3-snake.lp --optimal\n\n{STATUS}",
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.add_argument("--version", action="version", version=f"topomap {__version__}")
@@ -75,7 +76,7 @@ def _command(group: Any, name: str, run: Any, help: str, example: str) -> Parser
     return command
 
 
-def _number(kind: type, least: float, most: float = math.inf) -> Any:
+def _number(kind: type, least: float, most: float = LARGEST) -> Any:
     """An argument type: a finite number between bounds, with a plain word on what is not."""
 
     def number(text: str) -> Any:
@@ -83,8 +84,8 @@ def _number(kind: type, least: float, most: float = math.inf) -> Any:
             value = kind(text)
         except ValueError:
             value = math.nan
-        if not (least <= value <= most and value < math.inf):
-            bounds = f"{least} or more" if most == math.inf else f"from {least} to {most}"
+        if not least <= value <= most:
+            bounds = f"{least} or more" if most >= LARGEST else f"from {least} to {most}"
             noun = "a whole number" if kind is int else "a number"
             raise argparse.ArgumentTypeError(f"{text!r} is not {noun}, {bounds}")
         return value
@@ -113,7 +114,11 @@ def _add_generate(group: Any) -> None:
         "(4 slots; with 8, apart by commas: N,NE,E); or absolute slots: 0,3,1",
     )
     add("--steps", type=_number(int, 0), metavar="N", help="cut the route after N steps")
-    add("--start", metavar="PLACE", help="first place, such as 0,2 (default: the smallest)")
+    add(
+        "--start",
+        metavar="PLACE",
+        help="first place, such as 0,2 (default: the smallest)",
+    )
     add(
         "--facing",
         type=int,

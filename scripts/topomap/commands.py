@@ -1,6 +1,7 @@
 """What each subcommand of ``topomap`` does, and the exit status it ends with."""
 
 import argparse
+import contextlib
 import json
 import shlex
 import sys
@@ -22,17 +23,16 @@ from topomap.topology import TopologicalMap
 def generate(args: argparse.Namespace) -> int:
     """Explore an environment and write the instance."""
     made = _instance(args)
-    if args.truth:
-        with output(args.truth) as file:
-            at = [[step, *dstate] for step, dstate in enumerate(made.truth)]
-            json.dump({"maps": [{"at": at}], "complete": True}, file)
-            file.write("\n")
     target = args.output
     if target and (target.endswith("/") or Path(target).is_dir()):
         target = str(Path(target) / f"{made.name}.lp")
-    if target or not args.json:
-        with output(target) as file:
-            file.write(made.text())
+    with contextlib.ExitStack() as files:
+        if args.truth:
+            at = [[step, *dstate] for step, dstate in enumerate(made.truth)]
+            truth = json.dumps({"maps": [{"at": at}], "complete": True})
+            files.enter_context(output(args.truth)).write(truth + "\n")
+        if target or not args.json:
+            files.enter_context(output(target)).write(made.text())
     if args.json:
         summary = {
             "name": made.name,
@@ -78,15 +78,18 @@ def _query(args: argparse.Namespace) -> Query:
 
 def solve(args: argparse.Namespace) -> int:
     """Enumerate the maps of each instance."""
-    inputs = [(path, read(path)) for path in args.instance]
+    inputs = []
+    for path in args.instance:
+        experience = read(path)
+        truth = _truth(args.truth, experience, args.horizon) if args.truth else None
+        inputs.append((path, experience, truth))
     statuses = []
     with output(args.output) as out:
         if args.json and len(inputs) > 1:
             out.write('{"results": [\n')
-        for number, (path, experience) in enumerate(inputs):
+        for number, (path, experience, truth) in enumerate(inputs):
             if len(inputs) > 1:
                 out.write(",\n" * (number > 0) if args.json else f"{path}\n")
-            truth = _truth(args.truth, experience, args.horizon) if args.truth else None
             kind = "optimal" if args.optimal else None
             report = Report(out, path, experience, _query(args), kind, truth, args.json)
             statuses.append(_solve_one(args, experience, report))
@@ -125,7 +128,9 @@ def _truth(file: str, experience: Experience, horizon: int | None) -> Topologica
     """The real map of an experience, from a file that ``generate --truth`` wrote."""
     try:
         steps = json.loads(Path(file).read_text(encoding="utf-8"))["maps"][0]["at"]
-        at = tuple((place, slot) for _, place, slot in steps)
+        at = tuple((int(place), int(slot)) for _, place, slot in steps)
+        if not all(0 <= p <= t and 0 <= s < experience.slots for t, (p, s) in enumerate(at)):
+            raise ValueError("no place or gateway of this instance")
     except OSError as error:
         raise InputError(f"{file}: {(error.strerror or str(error)).lower()}") from None
     except (ValueError, LookupError, TypeError):
@@ -217,15 +222,13 @@ def family(args: argparse.Namespace) -> int:
                 f"{args.file}:{line}: a second instance named {made.name}; --name can part them"
             )
         calls[made.name] = call
-    folder.mkdir(parents=True, exist_ok=True)
     made_before = folder / ".family"
-    if made_before.exists():
-        for name in made_before.read_text(encoding="utf-8").splitlines():
-            if name not in calls:
-                (folder / f"{name}.args").unlink(missing_ok=True)
-                (folder / f"{name}.lp").unlink(missing_ok=True)
-    with output(str(made_before)) as file:
+    old = made_before.read_text(encoding="utf-8").splitlines() if made_before.exists() else []
+    with output(str(made_before), parents=True) as file:
         file.writelines(f"{name}\n" for name in calls)
+    for name in set(old) - set(calls):
+        (folder / f"{name}.args").unlink(missing_ok=True)
+        (folder / f"{name}.lp").unlink(missing_ok=True)
     for name, call in calls.items():
         path = folder / f"{name}.args"
         text = shlex.join(call) + "\n"

@@ -50,6 +50,11 @@ class Environment:
         return replace(self, map=replace(self.map, landmarks=landmarks))
 
 
+def plain(number: float) -> str:
+    """A number as the command line takes it, exactly."""
+    return str(int(number)) if number == int(number) else repr(number)
+
+
 def _term(place: Place) -> str:
     """A place as a ground term: a tuple of numbers, or a string."""
     if isinstance(place, tuple):
@@ -98,7 +103,7 @@ def maze(rows: int, columns: int, thin: float, seed: int) -> Environment:
             graph.remove_edge(a[0], b[0], a)
             del links[a], links[b]
             spare -= 1
-    call = "maze", str(rows), str(columns), "--thin", f"{thin:g}"
+    call = "maze", str(rows), str(columns), "--thin", plain(thin)
     name = f"maze-{rows}x{columns}-thin{100 * thin:g}"
     return Environment(name, call, world(4, links), (rows, columns))
 

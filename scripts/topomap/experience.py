@@ -16,6 +16,8 @@ from topomap.errors import InputError
 from topomap.topology import Gateway, Place, TopologicalMap
 
 DState = tuple[int, int]
+LARGEST = 2**31 - 1  # what clingo's numbers hold
+MOST_SLOTS = 10**6  # sums of slots then stay below it
 ARITY = {"slots": 1, "view": 2, "turn": 2, "landmark": 2}
 
 
@@ -90,7 +92,7 @@ def explore(
 def read(path: str | Path) -> Experience:
     """The experience in an instance file. Raises InputError, one line, on bad input."""
     try:
-        text = Path(path).read_text(encoding="utf-8")
+        text = Path(path).read_text(encoding="utf-8-sig")
     except OSError as error:
         raise InputError(f"{path}: {(error.strerror or str(error)).lower()}") from None
     except ValueError:
@@ -134,8 +136,8 @@ def _checked(
     if len(slots) != 1:
         raise InputError(f"{source}: {len(slots) or 'no'} facts slots(K); there must be one")
     (number,) = slots
-    if number < 2 or number % 2:
-        raise InputError(f"{source}: slots({number}): K must be even and at least 2")
+    if number < 2 or number % 2 or number > MOST_SLOTS:
+        raise InputError(f"{source}: slots({number}): K must be even, from 2 to {MOST_SLOTS}")
     last = max([0, *turns])
     for step in sorted({*views, *turns, *landmarks}):
         if step < 0 or step > last:
@@ -167,17 +169,26 @@ def _checked(
     )
 
 
-# A comment, an interval's two stops, a string, a full stop, or other text.
-_TOKEN = re.compile(r'%\*.*?\*%|%[^\n]*|\.\.|"(?:[^"\\\n]|\\.)*"|\.|[^%".]+|"', re.DOTALL)
+# Outside a block comment: its beginning, a line comment, the two stops of an interval, a
+# string, a full stop, or other text. Block comments are nested.
+_TOKEN = re.compile(r'%\*|%[^\n]*|\.\.|"(?:[^"\\\n]|\\.)*"|\.|[^%".]+|"', re.DOTALL)
+_COMMENT = re.compile(r"%\*|\*%|[^%*]+|[%*]", re.DOTALL)
 _FACT = re.compile(r"-?[a-z]\w*\(.*\)", re.DOTALL)
+_NUMBER = re.compile(r'"(?:[^"\\\n]|\\.)*"|(\d+)')
 
 
 def _facts(text: str, source: str) -> Iterator[tuple[int, clingo.Symbol]]:
     """The ground facts of a text, each with the line it begins in."""
     fact: list[str] = []
     line = begins = 1
-    for token in _TOKEN.findall(text):
-        if token == ".":
+    position = depth = 0
+    while match := (_COMMENT if depth else _TOKEN).match(text, position):
+        token, position = match[0], match.end()
+        if token == "%*":
+            depth += 1
+        elif depth:
+            depth -= token == "*%"
+        elif token == ".":
             yield begins, _fact("".join(fact).strip(), source, begins)
             fact = []
         elif not token.startswith("%") and (fact or token.strip()):
@@ -185,15 +196,18 @@ def _facts(text: str, source: str) -> Iterator[tuple[int, clingo.Symbol]]:
                 begins = line + token[: -len(token.lstrip())].count("\n")
             fact.append(token)
         line += token.count("\n")
-    if fact:
-        rest = _short("".join(fact))
-        raise InputError(f"{source}:{begins}: {rest} does not end with a full stop")
+    if fact or depth:
+        rest = _short("".join(fact)) if fact else "a comment"
+        raise InputError(f"{source}:{begins}: {rest} does not end")
 
 
 def _fact(text: str, source: str, line: int) -> clingo.Symbol:
     refused = InputError(f"{source}:{line}: {_short(text)} is not a ground fact")
     if not _FACT.fullmatch(text):
         raise refused
+    for match in _NUMBER.finditer(text):
+        if match[1] and int(match[1][:11]) > LARGEST:
+            raise InputError(f"{source}:{line}: {_short(match[1])} is larger than {LARGEST}")
     try:
         return clingo.parse_term(text, logger=lambda *_: None)
     except RuntimeError:

@@ -9,7 +9,7 @@ import zlib
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from topomap.environment import Environment
+from topomap.environment import Environment, plain
 from topomap.errors import InputError
 from topomap.experience import DState, Experience, explore
 from topomap.route import checked, letters, snake, tour, walk
@@ -28,7 +28,8 @@ class Instance:
 
     def text(self) -> str:
         """The instance file."""
-        return "".join(f"% {line}\n" for line in self.header) + "\n" + self.experience.facts()
+        header = (" ".join(line.split()) for line in self.header)
+        return "".join(f"% {line}\n" for line in header) + "\n" + self.experience.facts()
 
 
 def instance(
@@ -69,7 +70,7 @@ def instance(
         raise InputError(f"{environment.name}: place {label(first)} has no gateway {facing}")
 
     call = ["topomap", "generate", *environment.call, "--route", route]
-    parts = [environment.name, _part(route, len(taken), steps)]
+    parts = [_word(environment.name), _part(route, len(taken), steps)]
     if steps is not None:
         call += ["--steps", str(steps)]
     if start is not None:
@@ -79,12 +80,14 @@ def instance(
         call += ["--facing", str(facing)]
         parts += [f"facing{facing}"]
     if signs:
-        call += ["--signs", f"{signs:g}"]
+        call += ["--signs", plain(signs)]
         parts += [f"signs{100 * signs:g}"]
     if seed is not None:
         call += ["--seed", str(seed)]
         parts += [f"seed{seed}"]
     if name is not None:
+        if not re.fullmatch(r"[\w+][\w.+-]*", name):
+            raise InputError(f"name {name!r}: letters, digits and _ . + - only")
         call += ["--name", name]
     title = name or "-".join(parts)
 
@@ -119,4 +122,4 @@ def _part(route: str, taken: int, steps: int | None) -> str:
 
 def _word(text: str) -> str:
     """A text as a part of a file's name."""
-    return re.sub(r"[^0-9A-Za-z]+", "-", text).strip("-")
+    return re.sub(r"[^\w.]+", "-", text).strip("-.")

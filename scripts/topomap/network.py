@@ -7,6 +7,7 @@ are left out; a way is the straight line between its ends.
 
 import io
 import math
+import re
 from collections import Counter
 from pathlib import Path
 from typing import Any
@@ -14,8 +15,9 @@ from xml.etree.ElementTree import ParseError
 
 import networkx as nx
 
-from topomap.environment import Environment, by_bearing, flat_bearing
+from topomap.environment import Environment, by_bearing, flat_bearing, plain
 from topomap.errors import InputError
+from topomap.experience import MOST_SLOTS
 from topomap.topology import Place
 
 Point = tuple[float, float]
@@ -23,8 +25,10 @@ Point = tuple[float, float]
 
 def load(file: str | Path, slots: int, north: float) -> tuple[Environment, list[str]]:
     """The world in a GraphML file, and warnings. Raises InputError on bad input."""
-    if slots < 2 or slots % 2 or not math.isfinite(north):
-        raise InputError(f"{file}: {slots} slots, north {north}: slots are even, north is finite")
+    if not 2 <= slots <= MOST_SLOTS or slots % 2:
+        raise InputError(f"{file}: {slots} slots: they must be even, from 2 to {MOST_SLOTS}")
+    if not math.isfinite(north):
+        raise InputError(f"{file}: north {north}: it must be a finite number of degrees")
     graph = _read(file)
     loops = list(nx.selfloop_edges(graph))
     graph.remove_edges_from(loops)
@@ -44,6 +48,9 @@ def load(file: str | Path, slots: int, north: float) -> tuple[Environment, list[
         raise InputError(f"{file}: no ways in it")
     points = {place: _point(file, graph, place) for way in ways for place in way}
     unprojected = _unprojected(graph, points)
+    if "crs" not in graph.graph:
+        units = "degrees" if unprojected else "plane"
+        warnings.append(f"{file}: no crs in it; coordinates taken to be: {units}")
 
     def bearing(here: Place, there: Place) -> float:
         (x, y), (to_x, to_y) = points[here], points[there]
@@ -58,8 +65,13 @@ def load(file: str | Path, slots: int, north: float) -> tuple[Environment, list[
     except InputError as error:
         raise InputError(f"{file}: {error}") from None
     path = Path(file)
-    call = "network", path.name, "--slots", str(slots), "--north", f"{north:g}"
-    notes = (f"slot 0 at {north:g} degrees clockwise of north", *_provenance(graph))
+    call = "network", path.name, "--slots", str(slots), "--north", plain(north)
+    scale = "longitude and latitude" if unprojected else "plane"
+    notes = (
+        f"coordinates: {scale}",
+        f"slot 0 at {plain(north)} degrees clockwise of north",
+        *_provenance(graph),
+    )
     return Environment(path.stem, call, world, notes=notes), warnings
 
 
@@ -104,10 +116,11 @@ def _point(file: str | Path, graph: "nx.Graph[Any]", place: Place) -> Point:
 
 
 def _unprojected(graph: "nx.Graph[Any]", points: dict[Place, Point]) -> bool:
-    """Whether the coordinates are degrees of longitude and latitude."""
+    """Whether the coordinates are degrees of longitude and latitude: as the coordinate
+    reference system says or, without one, if they could be."""
     crs = str(graph.graph.get("crs", "")).lower()
     if crs:
-        return "4326" in crs or "longlat" in crs or "latlong" in crs
+        return bool(re.search(r"4326|4258|4269|crs84|longlat|latlong", crs))
     return all(abs(x) <= 180 and abs(y) <= 90 for x, y in points.values())
 
 

@@ -54,7 +54,7 @@ class Report:
         self.out, self.as_json = out, as_json
         self.experience, self.truth = experience, truth
         self.count = self.real = 0
-        self.last = Found((), kind or ("best" if query.optimizes else "consistent"))
+        self.last = Found((), kind or query.kind)
         if as_json:
             head = {
                 "instance": instance,

@@ -73,11 +73,12 @@ def walk(world: TopologicalMap, start: Place, seed: int) -> Iterator[int]:
 def tour(world: TopologicalMap, start: Place) -> list[int]:
     """A closed walk over every way that can be reached, by networkx's ``eulerize``;
     places and ways in sorted order."""
+    reached = nx.node_connected_component(nx.Graph((a[0], b[0]) for a, b in world.edges()), start)
     graph: nx.MultiGraph[Place] = nx.MultiGraph()
-    graph.add_nodes_from(sorted(world.stars))
+    graph.add_nodes_from(sorted(reached))
     for a, b in sorted(world.edges()):
-        graph.add_edge(a[0], b[0], key=a)
-    graph = graph.subgraph(nx.node_connected_component(graph, start)).copy()
+        if a[0] in reached:
+            graph.add_edge(a[0], b[0], key=a)
     route = []
     for here, there, key in nx.eulerian_circuit(nx.eulerize(graph), source=start, keys=True):
         # A way walked twice has a key of networkx's own: take the first way there.

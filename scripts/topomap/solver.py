@@ -57,6 +57,11 @@ class Query:
     def optimizes(self) -> bool:
         return bool(self.parts & OPTIMIZING)
 
+    @property
+    def kind(self) -> str:
+        """What the answers are."""
+        return "best" if self.optimizes else "consistent"
+
     def having(self, *parts: str) -> "Query":
         """The query with more parts."""
         return replace(self, parts=self.parts | set(parts))
@@ -111,7 +116,8 @@ class Watch:
         def note(*_: object) -> None:
             self.signal = True
 
-        self.handlers = [(number, signal.signal(number, note)) for number in SIGNALS]
+        heeded = [number for number in SIGNALS if signal.getsignal(number) != signal.SIG_IGN]
+        self.handlers = [(number, signal.signal(number, note)) for number in heeded]
         return self
 
     def __exit__(self, *_: object) -> None:
@@ -194,7 +200,7 @@ class Found:
 
 
 def hypotheses(
-    experience: Experience, query: Query, watch: Watch, kind: str = "consistent"
+    experience: Experience, query: Query, watch: Watch, kind: str | None = None
 ) -> Iterator[Found]:
     """Every hypothesis of a query; if it minimises, better and better ones, and then
     all of the best with their proof."""
@@ -203,8 +209,8 @@ def hypotheses(
         facts = sorted([a.number for a in fact.arguments] for fact in model.symbols(shown=True))
         at = tuple((place, slot) for _, place, slot in facts)
         if query.optimizes:
-            return Found(at, kind, tuple(model.cost), model.optimality_proven)
-        return Found(at, kind)
+            return Found(at, kind or query.kind, tuple(model.cost), model.optimality_proven)
+        return Found(at, kind or query.kind)
 
     return answers(experience, query, watch, read)
 
