@@ -1,5 +1,6 @@
 """What a user of plain clingo may rely on in each file of encodings/."""
 
+import json
 import re
 from itertools import combinations
 
@@ -31,6 +32,19 @@ def test_files_load_in_any_order_from_anywhere(tmp_path):
         done = run("clingo", *order, "0", "-q")
         assert "Models       : 3" in done.stdout.splitlines()
         assert not done.stderr
+
+
+@pytest.mark.parametrize(
+    ("program", "arguments", "status"),
+    [("a.", [], 30), ("{a}.", ["1"], 10), (":- not a. {a}. :- a.", [], 20), ("a :-", [], 65)],
+)
+def test_clingo_is_the_real_one(tmp_path, program, arguments, status):
+    file = tmp_path / "program.lp"
+    file.write_text(program)
+    done = run("clingo", file, *arguments)
+    assert done.returncode == status
+    assert done.stdout.startswith("clingo version 5.")
+    assert json.loads(run("clingo", "--outf=2", "--stats", file).stdout or "{}")["Solver"]
 
 
 def test_a_start_without_steps_has_one_map():
