@@ -59,26 +59,25 @@ class Hypothesis:
             axis = frozenset((gateway, self.opposite(gateway)))
             if axis in done:
                 continue
-            back = [(p, s) for p, s in self.ray(gateway)]
+            back = self.ray(gateway)
             forth = [self.opposite(a) for a in self.ray(self.opposite(gateway))]
             path = [*reversed(back), self.opposite(gateway), *forth]
             done |= {frozenset((h, self.opposite(h))) for h in path}
             paths.append(path)
         return paths
 
-    def faces(self, link=None):
+    def faces(self):
         """Faces as lists of directed links, each written as the gateway it leaves by."""
-        link = self.link if link is None else link
         faces, done = [], set()
-        for dart in link:
+        for dart in self.link:
             face = []
             while dart not in done:
                 done.add(dart)
                 face.append(dart)
-                place, slot = link[dart]
+                place, slot = self.link[dart]
                 while True:
                     slot = (slot - 1) % self.slots
-                    if (place, slot) in link:
+                    if (place, slot) in self.link:
                         break
                 dart = place, slot
             if face:
@@ -112,13 +111,9 @@ class Hypothesis:
     def travelled(self):
         return all(len(path) > 1 for path in self.paths())
 
-    def meetings(self):
-        places = [{p for p, _ in path} for path in self.paths()]
-        return [(a, b) for a, b in combinations(places, 2)], places
-
     def perpendicular(self):
-        pairs, places = self.meetings()
-        if any(len(a & b) > 1 for a, b in pairs):
+        places = [{p for p, _ in path} for path in self.paths()]
+        if any(len(a & b) > 1 for a, b in combinations(places, 2)):
             return False
         for a, b, c in combinations(places, 3):
             if a & b and b & c and a & c and len((a & b) | (b & c) | (a & c)) == 3:
