@@ -174,7 +174,7 @@ def _checked(
 _TOKEN = re.compile(r'%\*|%[^\n]*|\.\.|"(?:[^"\\\n]|\\.)*"|\.|[^%".]+|"', re.DOTALL)
 _COMMENT = re.compile(r"%\*|\*%|[^%*]+|[%*]", re.DOTALL)
 _FACT = re.compile(r"-?[a-z]\w*\(.*\)", re.DOTALL)
-_NUMBER = re.compile(r'"(?:[^"\\\n]|\\.)*"|(\d+)')
+_SPACE = re.compile(r'("(?:[^"\\\n]|\\.)*")|\s+')
 
 
 def _facts(text: str, source: str) -> Iterator[tuple[int, clingo.Symbol]]:
@@ -205,13 +205,14 @@ def _fact(text: str, source: str, line: int) -> clingo.Symbol:
     refused = InputError(f"{source}:{line}: {_short(text)} is not a ground fact")
     if not _FACT.fullmatch(text):
         raise refused
-    for match in _NUMBER.finditer(text):
-        if match[1] and int(match[1][:11]) > LARGEST:
-            raise InputError(f"{source}:{line}: {_short(match[1])} is larger than {LARGEST}")
     try:
-        return clingo.parse_term(text, logger=lambda *_: None)
+        symbol = clingo.parse_term(text, logger=lambda *_: None)
     except RuntimeError:
         raise refused from None
+    # clingo computes, and wraps numbers that are too large, without a word.
+    if str(symbol) != _SPACE.sub(r"\1", text):
+        raise InputError(f"{source}:{line}: {_short(text)} is no plain fact, clingo has {symbol}")
+    return symbol
 
 
 def _short(text: str) -> str:
