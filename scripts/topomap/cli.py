@@ -8,7 +8,7 @@ import sys
 from collections.abc import Iterable, Sequence
 from typing import Any, NoReturn
 
-from topomap import __version__, commands
+from topomap import __version__, commands, search
 from topomap.errors import BAD_INPUT, INTERRUPTED, PARTIAL, InputError
 from topomap.experience import LARGEST
 from topomap.solver import OPTIMIZING, PARTS, solving
@@ -59,6 +59,8 @@ def _parser() -> Parser:
     _add_generate(group)
     _add_solve(group)
     _add_count(group)
+    _add_search(group)
+    _add_branching(group)
     _add_table(group)
     _add_family(group)
     return parser
@@ -72,7 +74,7 @@ def _command(group: Any, name: str, run: Any, help: str, example: str) -> Parser
         epilog=f"example:\n{example}\n\n{STATUS}",
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    command.set_defaults(run=run)
+    command.set_defaults(run=run, command=name)
     return command
 
 
@@ -229,7 +231,22 @@ def _add_solve(group: Any) -> None:
         metavar="FILE",
         help="mark the maps that are the real one (from generate --truth)",
     )
+    command.add_argument(
+        "--by",
+        choices=("clingo", "search"),
+        default="clingo",
+        help="which of the two ways gives the answer (default: %(default)s)",
+    )
     _add_query(command, PARTS)
+    _add_resume(command)
+
+
+def _add_resume(command: Parser) -> None:
+    command.add_argument(
+        "--resume",
+        action="store_true",
+        help="go on where the last run with this output file was cut; it left FILE.part",
+    )
 
 
 def _add_count(group: Any) -> None:
@@ -242,6 +259,41 @@ def _add_count(group: Any) -> None:
     )
     command.add_argument("instance", metavar="INSTANCE")
     _add_query(command, [part for part in PARTS if part not in OPTIMIZING])
+    _add_resume(command)
+
+
+def _add_search(group: Any) -> None:
+    command = _command(
+        group,
+        "search",
+        commands.search_tree,
+        "search the tree of an exploration, as the paper does, without clingo",
+        """\
+  topomap search instances/grid-4x4-snake.lp --planar --bound 16
+  topomap search instances/grid-4x4-snake.lp --order depth
+  topomap search instances/grid-4x4-snake.lp --order best --planar --perpendicular""",
+    )
+    command.add_argument("instance", metavar="INSTANCE")
+    command.add_argument(
+        "--order",
+        choices=("breadth", "depth", "best"),
+        default="breadth",
+        help="breadth: step by step, counts the whole tree; depth: the same in little memory; "
+        "best: by the optimality policy, until a closed map is found (default: %(default)s)",
+    )
+    _add_query(command, search.PRUNING)
+
+
+def _add_branching(group: Any) -> None:
+    command = _command(
+        group,
+        "branching",
+        commands.branching_nodes,
+        "check the paper's equation (1) at every branching node of the planar tree",
+        "  topomap branching instances/grid-4x4-snake.lp --bound 16",
+    )
+    command.add_argument("instance", metavar="INSTANCE")
+    _add_query(command, ["perpendicular"])
 
 
 def _add_table(group: Any) -> None:
@@ -256,16 +308,22 @@ def _add_table(group: Any) -> None:
         "--jobs",
         type=_number(int, 1),
         metavar="N",
-        help="columns counted at a time (default: one a processor)",
+        help="processes (default: one a processor)",
     )
     command.add_argument("--json", action="store_true", help="print JSON instead of the table")
     command.add_argument(
         "-o",
         "--output",
         metavar="FILE",
-        default="results/figure4.json",
-        help="file to write (default: %(default)s)",
+        help="file to write (default: results/figure4.json, or beyond.json)",
     )
+    command.add_argument(
+        "--beyond",
+        action="store_true",
+        help="count what the paper does not have instead: 4x4 without a bound, 4x5, 5x4, 5x5; "
+        "takes an hour",
+    )
+    _add_resume(command)
 
 
 def _add_family(group: Any) -> None:

@@ -2,21 +2,25 @@
 
 import argparse
 import contextlib
+import hashlib
 import json
+import os
 import shlex
 import sys
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from topomap import environment, figure4, network
+from topomap import beyond, branching, environment, figure4, network, search, solver
 from topomap.errors import DONE, INTERRUPTED, NO, PARTIAL, InputError
 from topomap.experience import Experience, read
 from topomap.family import expand
 from topomap.files import output
 from topomap.generate import Instance, instance
+from topomap.journal import Journal
 from topomap.report import Report
-from topomap.solver import INTERRUPT, PARTS, Query, Stopped, Watch, best, hypotheses
-from topomap.statistics import KEYS, tree
+from topomap.solver import INTERRUPT, PARTS, Found, Query, Stopped, Watch, best
+from topomap.statistics import KEYS, Tally, tree
 from topomap.topology import TopologicalMap
 
 
@@ -76,6 +80,14 @@ def _query(args: argparse.Namespace) -> Query:
     return Query(parts, args.bound, args.horizon)
 
 
+def _run(args: argparse.Namespace, *experiences: Experience) -> dict[str, Any]:
+    """What a run computes: a journal goes on with no other one."""
+    facts = "".join(experience.facts() for experience in experiences)
+    keys = ("by", *PARTS, "optimal", "bound", "horizon")
+    asked = {key: getattr(args, key) for key in keys if getattr(args, key, None)}
+    return {"command": args.command, **asked, "facts": hashlib.sha256(facts.encode()).hexdigest()}
+
+
 def solve(args: argparse.Namespace) -> int:
     """Enumerate the maps of each instance."""
     inputs = []
@@ -83,8 +95,9 @@ def solve(args: argparse.Namespace) -> int:
         experience = read(path)
         truth = _truth(args.truth, experience, args.horizon) if args.truth else None
         inputs.append((path, experience, truth))
+    run = _run(args, *(experience for _, experience, _ in inputs))
     statuses = []
-    with output(args.output) as out:
+    with Journal(args.output, run, args.resume) as journal, output(args.output) as out:
         if args.json and len(inputs) > 1:
             out.write('{"results": [\n')
         for number, (path, experience, truth) in enumerate(inputs):
@@ -92,21 +105,23 @@ def solve(args: argparse.Namespace) -> int:
                 out.write(",\n" * (number > 0) if args.json else f"{path}\n")
             kind = "optimal" if args.optimal else None
             report = Report(out, path, experience, _query(args), kind, truth, args.json)
-            statuses.append(_solve_one(args, experience, report))
+            statuses.append(_solve_one(args, experience, report, journal))
             if statuses[-1] == INTERRUPTED:
                 break
+        complete = len(statuses) == len(inputs) and max(statuses) <= NO
         if args.json and len(inputs) > 1:
-            complete = len(statuses) == len(inputs) and max(statuses) <= NO
             out.write(f'], "complete": {json.dumps(complete)}}}\n')
+        journal.complete = complete
     return max(statuses)
 
 
-def _solve_one(args: argparse.Namespace, experience: Experience, report: Report) -> int:
-    query = _query(args)
+def _solve_one(
+    args: argparse.Namespace, experience: Experience, report: Report, journal: Journal
+) -> int:
     fault, candidate = None, None
     with Watch(args.timeout) as watch:
         try:
-            for found in (best if args.optimal else hypotheses)(experience, query, watch):
+            for found in _found(args, experience, watch, journal):
                 if not found.proved:
                     candidate = found
                 elif report.count == args.limit:
@@ -119,9 +134,40 @@ def _solve_one(args: argparse.Namespace, experience: Experience, report: Report)
         if fault and candidate and not report.count:
             report.add(candidate)
         report.end(fault)
+    return _status(fault, bool(report.count))
+
+
+def _status(fault: str | None, yes: bool) -> int:
+    """The exit status of an answer: partial, for that reason, or else yes or no."""
     if fault:
         return INTERRUPTED if fault == INTERRUPT else PARTIAL
-    return DONE if report.count else NO
+    return DONE if yes else NO
+
+
+def _found(
+    args: argparse.Namespace, experience: Experience, watch: Watch, journal: Journal
+) -> Iterator[Found]:
+    """The maps that ``solve`` asks for; if all go to a file, part by part of the tree, each
+    part a unit of the journal."""
+    query = _query(args)
+    way = search.hypotheses if args.by == "search" else solver.hypotheses
+    if args.optimal:
+        yield from filter(None, best(experience, query, watch, way))
+    elif query.optimizes or not journal.kept:
+        yield from filter(None, way(experience, query, watch))
+    else:
+        parts = search.cubes(experience, query)
+        done = 0
+        for at in journal.recorded(len(parts)):
+            done += at is None
+            if at is not None:
+                yield Found(tuple((place, slot) for place, slot in at), query.kind)
+        for found in way(experience, query, watch, cubes=parts[done:]):
+            if found is None:
+                journal.commit()
+            else:
+                journal.add(found.at)
+                yield found
 
 
 def _truth(file: str, experience: Experience, horizon: int | None) -> TopologicalMap:
@@ -141,53 +187,138 @@ def _truth(file: str, experience: Experience, horizon: int | None) -> Topologica
 
 
 def count(args: argparse.Namespace) -> int:
-    """Count the search tree of an instance."""
+    """Count the search tree of an instance, by clingo."""
     experience = read(args.instance)
     figures: dict[str, Any] = {}
     fault = None
+    with Journal(args.output, _run(args, experience), args.resume) as journal:
+        try:
+            with Watch(args.timeout) as watch:
+                tree(experience, _query(args), watch, journal, figures)
+        except Stopped as stopped:
+            fault = str(stopped)
+        _write_figures(args, figures, fault)
+        journal.complete = not fault
+    return _status(fault, bool(figures["final"]))
+
+
+def search_tree(args: argparse.Namespace) -> int:
+    """Search the tree of an instance: count it, or find a closed map best-first."""
+    experience = read(args.instance)
+    query = _query(args)
+    if args.order == "best":
+        return _best_first(args, experience, query)
+    node = search.root(experience, query)
+    tally = Tally(node.experience.steps)
+    fault = None
     try:
         with Watch(args.timeout) as watch:
-            tree(experience, _query(args), watch, figures)
+            for _ in search.ORDERS[args.order](node, watch):
+                tally.add(node)
+                watch.found = tally.per_step[-1]
     except Stopped as stopped:
-        fault = str(stopped)
+        fault = f"{stopped}; the figures are of the nodes searched until then"
+    _write_figures(args, tally.figures(), fault)
+    return _status(fault and str(fault).partition(";")[0], bool(tally.per_step[-1]))
+
+
+def _best_first(args: argparse.Namespace, experience: Experience, query: Query) -> int:
+    """The paper's best-first search, with backtracking while the map is not closed."""
+    fault = None
+    nodes = 0
+    with output(args.output) as out, Watch(args.timeout) as watch:
+        report = Report(out, args.instance, experience, query, "best-first", None, args.json)
+        try:
+            for node in search.best_first(search.root(experience, query), watch):
+                nodes += 1
+                if node.steps == node.experience.steps and node.closed():
+                    report.add(Found(node.dstates, "best-first", node.cost, proved=False))
+                    break
+        except Stopped as stopped:
+            fault = str(stopped)
+        report.end(fault, nodes=nodes)
+    return _status(fault, bool(report.count))
+
+
+def _write_figures(args: argparse.Namespace, figures: dict[str, Any], fault: str | None) -> None:
     with output(args.output) as out:
         if args.json:
             answer = {"instance": args.instance, **figures, "complete": not fault, "fault": fault}
             out.write(json.dumps(answer) + "\n")
+            return
+        out.write("hypotheses after each step: ")
+        out.write(" ".join(map(str, figures["per_step"])) + "\n")
+        for key in KEYS:
+            known = "not counted" if figures[key] is None else f"{figures[key]:,}"
+            out.write(f"{figure4.WORDS[key]:<42}{known:>12}\n")
+        if fault:
+            out.write(f"partial: {fault}\n")
+
+
+def branching_nodes(args: argparse.Namespace) -> int:
+    """Check the paper's equation (1) at every branching node of the planar tree."""
+    experience = read(args.instance)
+    query = _query(args).having("planar")
+    nodes: list[branching.BranchingNode] = []
+    fault = None
+    try:
+        with Watch(args.timeout) as watch:
+            for node in branching.branching(search.root(experience, query), watch):
+                nodes.append(node)
+    except Stopped as stopped:
+        fault = str(stopped)
+    totals = branching.summary(nodes)
+    with output(args.output) as out:
+        if args.json:
+            tail = {"complete": not fault, "fault": fault}
+            answer = {"instance": args.instance, "summary": totals}
+            answer |= {"nodes": [node.json() for node in nodes], **tail}
+            out.write(json.dumps(answer) + "\n")
         else:
-            out.write("hypotheses after each step: ")
-            out.write(" ".join(map(str, figures["per_step"])) + "\n")
-            for key in KEYS:
-                known = "not counted" if figures[key] is None else f"{figures[key]:,}"
-                out.write(f"{figure4.WORDS[key]:<42}{known:>12}\n")
+            out.write(branching.text(totals))
             if fault:
                 out.write(f"partial: {fault}\n")
-    if fault:
-        return INTERRUPTED if fault == INTERRUPT else PARTIAL
-    return DONE if figures["final"] else NO
+    holds = all(node.faces_hold and node.worst.difference == 0 for node in nodes)
+    return _status(fault, holds)
 
 
 def table(args: argparse.Namespace) -> int:
-    """Count the paper's table, print it and write it as JSON."""
+    """Count the paper's table, or what is beyond it, print it and write it as JSON."""
+    name = "beyond" if args.beyond else "figure4"
+    path = args.output or f"results/{name}.json"
+    jobs = args.jobs or os.cpu_count() or 1
     rows: list[dict[str, Any]] = []
-    with output(args.output, parents=True) as file:
+    if args.resume and not args.beyond:
+        raise InputError("topomap table: --resume goes with --beyond")
+    with output(path, parents=True) as file, contextlib.ExitStack() as stack:
+        if args.beyond:
+            columns = len(beyond.COLUMNS)
+            journal = stack.enter_context(Journal(path, {"command": name}, args.resume))
+            watch = stack.enter_context(Watch())
+            counted = beyond.rows(jobs, watch, journal)
+        else:
+            columns = len(figure4.COLUMNS)
+            counted = figure4.rows(jobs)
         try:
-            for row in figure4.rows(args.jobs):
+            for row in counted:
                 rows.append(row)
-                print(f"counted {len(rows)} of {len(figure4.COLUMNS)} columns", file=sys.stderr)
+                print(f"counted {len(rows)} of {columns} columns", file=sys.stderr)
         except Stopped:
-            _show_table(args, rows, complete=False)
+            _show_table(args, rows, columns)
             raise KeyboardInterrupt from None  # the file keeps an older, complete table
-        result = _show_table(args, rows, complete=True)
+        result = _show_table(args, rows, columns)
         json.dump(result, file, indent=1)
         file.write("\n")
+        if args.beyond:
+            journal.complete = True
     return NO if any(map(figure4.differences, rows)) else DONE
 
 
 def _show_table(
-    args: argparse.Namespace, rows: list[dict[str, Any]], complete: bool
+    args: argparse.Namespace, rows: list[dict[str, Any]], columns: int
 ) -> dict[str, Any]:
     rows.sort(key=lambda row: (row["environment"], row["planarity"]))
+    complete = len(rows) == columns
     result = {"complete": complete, "rows": rows}
     different = [cell for row in rows for cell in figure4.differences(row)]
     if args.json:
@@ -198,9 +329,9 @@ def _show_table(
     for cell in different:
         print(f"differs: {cell}")
     if not complete:
-        print(f"partial: {len(rows)} of {len(figure4.COLUMNS)} columns")
+        print(f"partial: {len(rows)} of {columns} columns")
     elif not different:
-        print("Every figure is the paper's.")
+        print(beyond.VERDICT if args.beyond else "Every figure is the paper's.")
     return result
 
 

@@ -1,7 +1,6 @@
-"""The paper's table (Figure 4) beside ours."""
+"""The paper's table (Figure 4) beside ours, and tables as text."""
 
 import json
-import os
 import time
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor, as_completed
@@ -9,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from topomap.experience import read
+from topomap.journal import Journal
 from topomap.solver import Query, Watch
 from topomap.statistics import KEYS, tree
 
@@ -32,7 +32,7 @@ def row(column: dict[str, Any], watch: Watch) -> dict[str, Any]:
     begun = time.perf_counter()
     query = Query(frozenset(["planar"] if column["planarity"] else []), column["places"])
     figures: dict[str, Any] = {}
-    tree(read(INSTANCES / f"{column['instance']}.lp"), query, watch, figures)
+    tree(read(INSTANCES / f"{column['instance']}.lp"), query, watch, Journal(), figures)
     return {
         "environment": column["environment"],
         "planarity": column["planarity"],
@@ -43,37 +43,45 @@ def row(column: dict[str, Any], watch: Watch) -> dict[str, Any]:
     }
 
 
-def rows(jobs: int | None = None) -> Iterator[dict[str, Any]]:
+def rows(jobs: int) -> Iterator[dict[str, Any]]:
     """The rows of the table, each as soon as it is counted; the largest begin first.
     Raises Stopped when interrupted."""
-    with ThreadPoolExecutor(jobs or os.cpu_count()) as pool, Watch(quiet=True) as watch:
+    with ThreadPoolExecutor(jobs) as pool, Watch(quiet=True) as watch:
         pending = [pool.submit(row, column, watch) for column in reversed(COLUMNS)]
         for done in as_completed(pending):
             yield done.result()
 
 
 def differences(row: dict[str, Any]) -> list[str]:
-    """The cells in which a row differs from the paper or from what is expected."""
+    """The cells in which a row differs from the paper, from what is expected, or from
+    another way to count it."""
     where = f"{row['environment']} {'with' if row['planarity'] else 'without'} planarity"
     return [
         f"{where}: {key} is {row[key]}, {source} has {figure}"
-        for source in ("paper", "expected")
-        for key, figure in row[source].items()
+        for source in ("paper", "expected", "clingo")
+        for key, figure in row.get(source, {}).items()
         if row[key] != figure
     ]
 
 
 def text(rows: list[dict[str, Any]]) -> str:
-    """The table to read: for each figure ours, and below it the paper's."""
-    rows = sorted(rows, key=lambda row: (row["environment"], row["planarity"]))
-    head = [""] + [row["environment"] for row in rows]
-    lines = [head, ["planarity"] + ["yes" if row["planarity"] else "no" for row in rows]]
+    """A table to read: for each figure ours, and below it the paper's."""
+
+    def line(word: str, key: str) -> list[str]:
+        cells = [row.get(key) for row in rows]
+        return [word] + [_cell(cell) for cell in cells]
+
+    lines = [line("", "environment"), line("planarity", "planarity")]
+    if any(row.get("places") for row in rows):
+        lines.append(line("places, at most", "places"))
     for key in KEYS:
-        lines.append([WORDS[key]] + [f"{row[key]:,}" for row in rows])
-        paper = [row["paper"].get(key) for row in rows]
-        if any(figure is not None for figure in paper):
-            lines.append(["    paper"] + ["" if f is None else f"{f:,}" for f in paper])
-    lines.append(["seconds"] + [f"{row['seconds']:.1f}" for row in rows])
+        lines.append(line(WORDS[key], key))
+        for source in "paper", "clingo":
+            cells = [row.get(source, {}).get(key) for row in rows]
+            if any(cells):
+                lines.append([f"    {source}", *map(_cell, cells)])
+    if "seconds" in rows[0]:
+        lines.append(line("seconds", "seconds"))
     widths = [max(map(len, cells)) for cells in zip(*lines, strict=True)]
     return "\n".join(
         "  ".join(
@@ -82,3 +90,11 @@ def text(rows: list[dict[str, Any]]) -> str:
         ).rstrip()
         for line in lines
     )
+
+
+def _cell(value: object) -> str:
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    if isinstance(value, float):
+        return f"{value:.1f}"
+    return f"{value:,}" if isinstance(value, int) else str(value or "")

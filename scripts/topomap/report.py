@@ -61,7 +61,7 @@ class Report:
                 "parts": sorted(query.parts),
                 "bound": query.places,
                 "horizon": query.horizon,
-                "optimal": kind is not None,
+                "optimal": kind == "optimal",
             }
             out.write(json.dumps(head)[:-1] + ', "maps": [')
 
@@ -82,12 +82,14 @@ class Report:
             mark = " (the real map)" if real else ""
             self.out.write(f"map {self.count}{mark}: {map_line(self.experience, found)}\n")
 
-    def end(self, fault: str | None) -> None:
-        """Write what the maps are, and whether they are all."""
+    def end(self, fault: str | None, nodes: int | None = None) -> None:
+        """Write what the maps are, and whether they are all; ``nodes`` were searched."""
         if self.as_json:
             tail: dict[str, Any] = {"kind": self.last.kind, "count": self.count}
             if self.last.cost:
                 tail |= {"cost": self.last.cost, "proved": self.last.proved}
+            if nodes is not None:
+                tail["nodes"] = nodes
             tail |= {"complete": fault is None, "fault": fault}
             self.out.write("\n], " + json.dumps(tail)[1:] + "\n")
             return
@@ -97,6 +99,8 @@ class Report:
             line += f", cost {' '.join(map(str, self.last.cost))}"
         if not self.last.proved:
             line += ", not proved to be best"
+        if nodes is not None:
+            line += f", {nodes:,} nodes searched"
         if self.truth and not self.real:
             line += ", the real map is not among them"
         self.out.write(line + (f"; partial: {fault}\n" if fault else "\n"))

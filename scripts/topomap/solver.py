@@ -9,8 +9,7 @@ import signal
 import sys
 import threading
 import time
-from collections import deque
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TypeVar
@@ -35,6 +34,7 @@ PARTS = {
 OPTIMIZING = {"genus", "minimal"}
 
 Answer = TypeVar("Answer")
+Cube = tuple[DState, ...]  # the first dstates of a hypothesis
 SOLVER = "clingo"
 INTERRUPT = "interrupted"
 SIGNALS = (signal.SIGINT, signal.SIGTERM)
@@ -131,9 +131,11 @@ def answers(
     query: Query,
     watch: Watch,
     read: Callable[[clingo.Model], Answer | None],
-) -> Iterator[Answer]:
-    """What ``read`` makes of each model, in the solver's order; a model of which it
-    makes None is passed over. Raises Stopped at the time limit."""
+    cubes: Iterable[Cube] | None = None,
+) -> Iterator[Answer | None]:
+    """What ``read`` makes of each model, in the solver's order; a model of which it makes
+    None is passed over. With ``cubes``, the models that begin with the first of them, then
+    a None, and so on. Raises Stopped at the time limit."""
     found: queue.Queue[Answer | Exception | None] = queue.Queue(maxsize=1000)
     stop = threading.Event()
 
@@ -154,9 +156,12 @@ def answers(
     def work() -> None:
         try:
             control.ground()
-            if not stop.is_set():
-                control.solve(on_model=take)
-            put(None)
+            for cube in [()] if cubes is None else cubes:
+                if not stop.is_set():
+                    control.solve(_assumed(cube), on_model=take)
+                    if cubes is not None:
+                        put(None)
+            put(StopIteration())
         except Exception as error:  # raised again in the caller's thread
             put(error)
 
@@ -170,7 +175,7 @@ def answers(
             except queue.Empty:
                 watch.tick()
                 continue
-            if item is None:
+            if isinstance(item, StopIteration):
                 return
             if isinstance(item, Exception):
                 raise item
@@ -180,6 +185,13 @@ def answers(
         stop.set()
         control.interrupt()
         thread.join(timeout=0.5)
+
+
+def _assumed(cube: Cube) -> list[tuple[clingo.Symbol, bool]]:
+    return [
+        (clingo.Function("at", [clingo.Number(number) for number in (step, *dstate)]), True)
+        for step, dstate in enumerate(cube)
+    ]
 
 
 def solving() -> bool:
@@ -200,10 +212,15 @@ class Found:
 
 
 def hypotheses(
-    experience: Experience, query: Query, watch: Watch, kind: str | None = None
-) -> Iterator[Found]:
+    experience: Experience,
+    query: Query,
+    watch: Watch,
+    kind: str | None = None,
+    cubes: Sequence[Cube] | None = None,
+) -> Iterator[Found | None]:
     """Every hypothesis of a query; if it minimises, better and better ones, and then
-    all of the best with their proof."""
+    all of the best with their proof. With ``cubes``, which is not for minimising, those
+    that begin with the first of them, then a None, and so on."""
 
     def read(model: clingo.Model) -> Found:
         facts = sorted([a.number for a in fact.arguments] for fact in model.symbols(shown=True))
@@ -212,38 +229,48 @@ def hypotheses(
             return Found(at, kind or query.kind, tuple(model.cost), model.optimality_proven)
         return Found(at, kind or query.kind)
 
-    return answers(experience, query, watch, read)
+    return answers(experience, query, watch, read, cubes)
 
 
-def best(experience: Experience, query: Query, watch: Watch) -> Iterator[Found]:
+Way = Callable[..., Iterator[Found | None]]  # hypotheses, here or by search
+
+
+def best(
+    experience: Experience, query: Query, watch: Watch, way: Way = hypotheses
+) -> Iterator[Found | None]:
     """The best maps (semantics: "optimal" and "best so far"), as ``hypotheses`` gives them.
 
     ``optimal``: closed, with consistent boundaries, fewest paths, then fewest places;
     where there is none, ``best so far``: the same, pending gateways allowed.
     """
-    optimal = hypotheses(
-        experience, query.having("closed", "boundary", "minimal"), watch, "optimal"
-    )
+    optimal = way(experience, query.having("closed", "boundary", "minimal"), watch, "optimal")
     first = next(optimal, None)
     if first is not None:
         yield first
         yield from optimal
     else:
-        yield from hypotheses(experience, query.having("boundary", "minimal"), watch, "best so far")
+        yield from way(experience, query.having("boundary", "minimal"), watch, "best so far")
 
 
-def count(experience: Experience, query: Query, watch: Watch) -> tuple[int, int]:
-    """The number of hypotheses (of best ones, if the query minimises), and of those
-    among them whose last step added a link (or that have no step)."""
+def count(
+    experience: Experience, query: Query, watch: Watch, cubes: Iterable[Cube] = ((),)
+) -> Iterator[tuple[int, int]]:
+    """For each cube, how many hypotheses begin with it (best ones, if the query minimises),
+    and how many of these have a last step that added a link (or have no step)."""
     last = experience.steps if query.horizon is None else min(query.horizon, experience.steps)
     fresh = clingo.Function("fresh", [clingo.Number(last)])
-    total = grown = 0
+    counts: list[list[int]] = []
+
+    def begun() -> Iterator[Cube]:
+        for cube in cubes:
+            counts.append([0, 0])
+            yield cube
 
     def read(model: clingo.Model) -> None:
-        nonlocal total, grown
         if model.optimality_proven or not query.optimizes:
-            total += 1
-            grown += last == 0 or model.contains(fresh)
+            counts[-1][0] += 1
+            counts[-1][1] += last == 0 or model.contains(fresh)
 
-    deque(answers(experience, query, watch, read), maxlen=0)
-    return total, grown
+    for number, _ in enumerate(answers(experience, query, watch, read, begun())):
+        total, grown = counts[number]
+        yield total, grown

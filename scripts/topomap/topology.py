@@ -104,6 +104,24 @@ class TopologicalMap:
                 return f"the path through place {label(places[0])} is circular"
         return None
 
+    def boundaries_consistent(self) -> bool:
+        """Whether no place is both left and right of a path, and none on it and beside it
+        (the SSH's boundary regions; semantics: "Boundary consistency")."""
+        for path in self.paths():
+            on = {place for place, _ in path}
+            right, left = (
+                {
+                    met
+                    for place, heading in path
+                    for turn in range(1, self.slots // 2)
+                    for met, _ in self.straight_on((place, (heading + side * turn) % self.slots))
+                }
+                for side in (1, -1)
+            )
+            if left & right or on & (left | right):
+                return False
+        return True
+
     def next(self, gateway: Gateway) -> Gateway:
         """The next link of the face walk: take the link out of ``gateway``, then the
         next linked gateway counter-clockwise (the paper's next = pred . rev)."""

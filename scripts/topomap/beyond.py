@@ -1,0 +1,62 @@
+"""Beyond the paper's table: larger grids, and 4x4 without a bound, by depth-first search. The
+last level of the tree is counted by clingo too, where that ends in time."""
+
+import math
+import time
+from collections.abc import Iterator
+from typing import Any
+
+from topomap.environment import grid
+from topomap.generate import Instance, instance
+from topomap.journal import Journal
+from topomap.solver import Query, Stopped, Watch, count
+from topomap.statistics import searched
+
+VERDICT = "Counted by depth-first search, the final maps by clingo too where it finished."
+# rows, columns, most places, planarity
+COLUMNS: list[tuple[int, int, int | None, bool]] = [
+    (4, 4, None, False),
+    (4, 4, None, True),
+    (4, 5, 20, False),
+    (4, 5, 20, True),
+    (5, 4, 20, False),
+    (5, 4, 20, True),
+    (5, 5, 25, True),
+]
+
+
+def rows(jobs: int, watch: Watch, journal: Journal, limit: float = 600) -> Iterator[dict[str, Any]]:
+    """The rows of the table; clingo is given ``limit`` seconds for each. Raises Stopped."""
+    for height, width, places, planar in COLUMNS:
+        made = instance(grid(height, width), "snake")
+        query = Query(frozenset(["planar"] if planar else []), places)
+        watch.title(f"{made.name}, {'planar' if planar else 'any'} maps")
+        figures = searched(made.experience, query, watch, journal, jobs).figures()
+        yield {
+            "environment": f"{height}x{width}",
+            "planarity": planar,
+            "places": places,
+            **figures,
+            "way": "depth-first search",
+            "clingo": _by_clingo(made, query, limit, watch, journal),
+        }
+
+
+def _by_clingo(
+    made: Instance, query: Query, limit: float, watch: Watch, journal: Journal
+) -> dict[str, int]:
+    """The number of final maps, if clingo has it in ``limit`` seconds."""
+    for value in journal.known(1):
+        return dict(value)
+    final: dict[str, int] = {}
+    deadline = watch.deadline
+    watch.deadline = min(deadline or math.inf, time.monotonic() + limit)
+    try:
+        ((total, _),) = count(made.experience, query, watch)
+        final = {"final": total}
+    except Stopped:
+        watch.deadline = deadline
+        watch.tick()  # raises it again, if it was not for the limit
+    watch.deadline = deadline
+    journal.keep(final)
+    return final

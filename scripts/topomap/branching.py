@@ -1,0 +1,190 @@
+"""Equation (1) of the paper, node by node: how much planarity narrows the search.
+
+Predicted: bp/b = (pi / mean p) / (m + 1), with pi pending gateways on the face of the one
+that the step leaves by, p on all f faces, mean p = p / f, and m matches so far.
+Measured: every child is built, and its genus counted anew. Children are counted before the
+path axiom and the bound; one of them is always the map with a new place.
+"""
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from fractions import Fraction
+from itertools import groupby
+from typing import Any
+
+from topomap.hypothesis import Hypothesis
+from topomap.search import breadth_first
+from topomap.solver import Watch
+
+
+@dataclass(frozen=True)
+class Branches:
+    """A node's children ``b``, planar ones ``bp``; pending gateways on the face ``pi``, and
+    in all ``p``; and the ratio bp/b by equation (1), None if p is 0."""
+
+    b: int
+    bp: int
+    pi: int
+    p: int
+    predicted: Fraction | None
+
+    @property
+    def measured(self) -> Fraction:
+        return Fraction(self.bp, self.b)
+
+    @property
+    def difference(self) -> Fraction | None:
+        return None if self.predicted is None else self.measured - self.predicted
+
+    def json(self) -> dict[str, Any]:
+        numbers = {"measured": self.measured, "predicted": self.predicted}
+        return {
+            **{key: getattr(self, key) for key in ("b", "bp", "pi", "p")},
+            **{key: None if n is None else float(n) for key, n in numbers.items()},
+            "equal": self.measured == self.predicted,
+        }
+
+
+@dataclass(frozen=True)
+class BranchingNode:
+    """A node whose next step, ``step``, leaves by a pending gateway.
+
+    ``worst``: as if every pending gateway fitted what is seen, as the paper assumes.
+    ``seen``: those that do fit (its footnote 2: pi and p are of these too).
+    ``start_fits``: whether the gateway left by is one of them, as in the worst case it is.
+    """
+
+    at: tuple[tuple[int, int], ...]
+    step: int
+    matches: int
+    faces: int
+    start_fits: bool
+    worst: Branches
+    seen: Branches
+
+    @property
+    def faces_hold(self) -> bool:
+        """f = m + 1."""
+        return self.faces == self.matches + 1
+
+    @property
+    def gap(self) -> Fraction:
+        """The ratio under the views that are seen, less that of equation (1) as it stands."""
+        return self.seen.measured - (self.worst.predicted or 0)
+
+    def json(self) -> dict[str, Any]:
+        return {
+            "step": self.step,
+            "at": [[step, *dstate] for step, dstate in enumerate(self.at)],
+            "m": self.matches,
+            "f": self.faces,
+            "start_fits": self.start_fits,
+            "worst": self.worst.json(),
+            "seen": self.seen.json(),
+            "seen_minus_equation": float(self.gap),
+        }
+
+
+def branching(node: Hypothesis, watch: Watch) -> Iterator[BranchingNode]:
+    """The branching nodes of a planar tree, step by step."""
+    for _ in breadth_first(node, watch):
+        if node.steps < node.experience.steps and node.out() not in node.links:
+            watch.found += 1
+            yield _branching(node)
+
+
+def _branching(node: Hypothesis) -> BranchingNode:
+    out, new = node.out(), (node.steps + 1) * node.slots
+    pending = tuple(gateway for face in node.faces for gateway in face)
+    faces = len(node.map.faces())
+    planar = {new} | {gateway for gateway in pending if gateway != out and _planar(node, gateway)}
+
+    def branches(fit: set[int]) -> Branches:
+        children = {new} | fit - {out}
+        pi, p = len(fit & set(node.face(out))), len(fit)
+        by_equation = Fraction(pi, 1) / Fraction(p, faces) / (node.matches + 1) if p else None
+        return Branches(len(children), len(children & planar), pi, p, by_equation)
+
+    fitting = set(node.fitting(pending))
+    return BranchingNode(
+        at=node.dstates,
+        step=node.steps + 1,
+        matches=node.matches,
+        faces=faces,
+        start_fits=out in fitting,
+        worst=branches(set(pending)),
+        seen=branches(fitting),
+    )
+
+
+def _planar(node: Hypothesis, arrival: int) -> bool:
+    """Whether the map stays planar when the next step arrives there."""
+    return node.experience.map_of((*node.dstates, divmod(arrival, node.slots))).genus() == 0
+
+
+def summary(nodes: Iterable[BranchingNode]) -> dict[str, Any]:
+    """Totals, and totals by step (nodes come in the order of steps)."""
+    steps = {step: _totals(list(group)) for step, group in groupby(nodes, lambda n: n.step)}
+    whole = _totals([])
+    for totals in steps.values():
+        for key, value in totals.items():
+            merge = max if key.startswith("largest") else sum
+            whole[key] = merge((whole[key], value))
+    return {**whole, "steps": [{"step": step, **totals} for step, totals in steps.items()]}
+
+
+def _totals(nodes: list[BranchingNode]) -> dict[str, Any]:
+    """Sums over some nodes. ``worst_equal``: nodes at which the worst case is as predicted;
+    ``seen_equal``: the same under the views that are seen, by footnote 2, of those where it
+    predicts anything (``seen_predicted``); ``largest_difference`` there, and ``largest_gap``
+    to equation (1) as it stands."""
+    predicted = [abs(n.seen.difference) for n in nodes if n.seen.difference is not None]
+    return {
+        "nodes": len(nodes),
+        "f_is_m_plus_1": sum(n.faces_hold for n in nodes),
+        "matches": sum(n.matches for n in nodes),
+        "worst_b": sum(n.worst.b for n in nodes),
+        "worst_bp": sum(n.worst.bp for n in nodes),
+        "worst_equal": sum(n.worst.difference == 0 for n in nodes),
+        "seen_b": sum(n.seen.b for n in nodes),
+        "seen_bp": sum(n.seen.bp for n in nodes),
+        "seen_predicted": len(predicted),
+        "seen_equal": sum(n.seen.difference == 0 for n in nodes),
+        "start_fits": sum(n.start_fits for n in nodes),
+        "start_fits_and_equal": sum(n.start_fits and n.seen.difference == 0 for n in nodes),
+        "largest_difference": round(float(max(predicted, default=0)), 6),
+        "largest_gap": round(float(max((abs(n.gap) for n in nodes), default=0)), 6),
+    }
+
+
+def text(totals: dict[str, Any]) -> str:
+    """A summary to read: by step, and of all."""
+    head = "step", "nodes", "m", "worst b", "bp", "bp/b", "seen b", "bp", "bp/b", "start fits"
+    lines = [" ".join(word.rjust(9) for word in head)]
+    for part in [*totals["steps"], totals]:
+        b, bp = part["worst_b"], part["worst_bp"]
+        seen, seen_bp = part["seen_b"], part["seen_bp"]
+        cells = [
+            str(part.get("step", "all")),
+            str(part["nodes"]),
+            f"{part['matches'] / (part['nodes'] or 1):.2f}",
+            *(str(b), str(bp), f"{bp / (b or 1):.3f}"),
+            *(str(seen), str(seen_bp), f"{seen_bp / (seen or 1):.3f}"),
+            str(part["start_fits"]),
+        ]
+        lines.append(" ".join(cell.rjust(9) for cell in cells))
+    nodes = totals["nodes"]
+    return "\n".join(
+        [
+            *lines,
+            f"f = m + 1: at {totals['f_is_m_plus_1']} of {nodes} branching nodes",
+            f"worst case as equation (1) predicts: at {totals['worst_equal']} of {nodes}",
+            "as seen, of those that fit (footnote 2): "
+            f"at {totals['seen_equal']} of {totals['seen_predicted']} with a prediction, "
+            f"largest difference {totals['largest_difference']:.3f}; "
+            f"where the start fits too: at {totals['start_fits_and_equal']} "
+            f"of {totals['start_fits']}",
+            f"as seen, less equation (1): at most {totals['largest_gap']:.3f}",
+            "",
+        ]
+    )

@@ -1,0 +1,115 @@
+"""Journals of long runs: what is done, in FILE.part beside the output FILE, to go on from."""
+
+import fcntl
+import json
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any, BinaryIO
+
+from topomap import __version__
+from topomap.errors import InputError
+
+DONE = b"done\n"
+
+
+class Journal:
+    """A run in units: values are written, and a unit is done when it is committed.
+
+    ``run`` says what is computed. With ``resume`` the journal of an earlier, equal run is
+    gone on with after its last unit that was done. Without an output file, or if that
+    is no regular one, nothing is kept. Raises InputError where the
+    file cannot be had, another process has it, or it is of another run.
+    """
+
+    def __init__(
+        self, output: str | None = None, run: Mapping[str, Any] | None = None, resume: bool = False
+    ):
+        self.path: Path | None = None
+        self.complete = False
+        self._end = 0
+        self._reader: BinaryIO | None = None
+        head = json.dumps({"topomap": __version__, **(run or {})}) + "\n"
+        if output is None or (Path(output).exists() and not Path(output).is_file()):
+            if resume:
+                raise InputError("--resume: it needs an output file (-o)")
+            return
+        self.path = Path(f"{Path(output).resolve()}.part")
+        try:
+            self._file = self.path.open("a+b")
+            fcntl.flock(self._file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            if resume and self.path.stat().st_size:
+                self._read(head)
+            self._file.truncate(self._end)
+            if not self._end:
+                self._file.write(head.encode())
+                self._file.flush()
+            self._reader = self.path.open("rb")
+            self._reader.readline()
+        except BlockingIOError:
+            raise InputError(f"{self.path}: another run is writing it") from None
+        except OSError as error:
+            raise InputError(f"{self.path}: {(error.strerror or str(error)).lower()}") from None
+
+    def _read(self, head: str) -> None:
+        self._file.seek(0)
+        first = self._file.readline()
+        if not first.endswith(b"\n"):
+            return
+        if first != head.encode():
+            raise InputError(f"{self.path}: of another run; without --resume it is begun anew")
+        self._end = self._file.tell()
+        for line in self._file:
+            if line == DONE:
+                self._end = self._file.tell()
+
+    @property
+    def kept(self) -> bool:
+        """Whether anything is noted."""
+        return self.path is not None
+
+    def recorded(self, units: int) -> Iterator[Any]:
+        """The values of the next so many of the units that are done, and a None after each
+        unit."""
+        while units and self._reader and self._reader.tell() < self._end:
+            line = self._reader.readline()
+            units -= line == DONE
+            yield None if line == DONE else json.loads(line)
+
+    def known(self, units: int) -> list[Any]:
+        """The same of units of one value each."""
+        return [value for value in self.recorded(units) if value is not None]
+
+    def keep(self, value: Any) -> None:
+        """Note a unit of one value, that is done."""
+        self.add(value)
+        self.commit()
+
+    def add(self, value: Any) -> None:
+        """Note a value of the unit that is being worked on."""
+        self._write(json.dumps(value))
+
+    def commit(self) -> None:
+        """Note that the unit is done."""
+        self._write(DONE.decode().strip(), flush=True)
+
+    def _write(self, line: str, flush: bool = False) -> None:
+        if self._reader is None:
+            return
+        try:
+            self._file.write(line.encode() + b"\n")
+            if flush:
+                self._file.flush()
+        except OSError as error:
+            raise InputError(f"{self.path}: {(error.strerror or str(error)).lower()}") from None
+
+    def __enter__(self) -> "Journal":
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, *_: object) -> None:
+        """Let go of the file; it goes when the run was complete, and was written down."""
+        if self._reader is None or self.path is None:
+            return
+        self._file.close()
+        self._reader.close()
+        if self.complete and kind is None:
+            self.path.unlink()
