@@ -4,6 +4,7 @@ import json
 import shutil
 import subprocess
 import sys
+from collections import Counter
 from pathlib import Path
 
 import clingo
@@ -17,6 +18,12 @@ PARTS = ("planar", "euler", "closed", "travelled", "boundary", "perpendicular")
 COLUMNS = json.loads((ROOT / "scripts/topomap/figure4.json").read_text())["columns"]
 SHARED = ROOT.parent / "shared" / "maps"
 BIN = Path(sys.executable).parent
+TRIED = Counter()  # what was tried how often, for the last lines of a test run
+
+
+def pytest_terminal_summary(terminalreporter):
+    for what, number in sorted(TRIED.items()):
+        terminalreporter.write_line(f"tried: {number:,} {what}")
 
 
 def answers(parts, facts, *arguments, programs=None):

@@ -1,12 +1,19 @@
-"""Stock clingo on the encodings against the independent search, on random experiences."""
+"""Ways to the same answer, on random experiences: stock clingo on the encodings, the search
+of the package, a slow independent search (oracle.py), and two checkers of maps."""
 
 import random
+from collections import Counter
+from contextlib import contextmanager
+from dataclasses import replace
 from itertools import combinations
 
 import pytest
-from conftest import PARTS, Truth, answers
+from conftest import PARTS, TRIED, Truth, answers
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
+from topomap import search, solver
+from topomap.check import by_definition, by_rules
+from topomap.solver import Query, Watch
 from worlds import random_experience
 
 QUICK = settings(
@@ -15,6 +22,37 @@ QUICK = settings(
     deadline=None,
     suppress_health_check=list(HealthCheck),
 )
+EVERY = [parts for number in (0, 1, 2, len(PARTS)) for parts in combinations(PARTS, number)]
+DEMANDS = {"planar": "planar", "euler": "planar"}  # of check.lp; other parts by their names
+
+
+@contextmanager
+def case(experience, parts=(), *arguments):
+    """Print a case that fails as an instance file, and the commands that give its answers."""
+    TRIED["queries on which ways to an answer were compared"] += 1
+    try:
+        yield
+    except AssertionError as error:
+        files = " ".join(f"encodings/{part}.lp" for part in ("topomap", *parts))
+        switches = " ".join(f"--{part}" for part in parts)
+        error.add_note(f"save as case.lp:\n{experience.facts()}")
+        error.add_note(f"clingo {files} case.lp {' '.join(arguments)} 0")
+        error.add_note(f"topomap solve case.lp {switches} --by search")
+        raise
+
+
+def searched(experience, *parts, places=None, horizon=None, way=search.hypotheses):
+    """The hypotheses that the search finds, each once; the best ones, if a part minimises."""
+    query = Query(frozenset(parts), places, horizon)
+    found = [f.at for f in way(experience, query, Watch(quiet=True)) if f.proved]
+    assert len(found) == len(set(found))
+    return set(found)
+
+
+def best(experience, way):
+    """The optimal maps, or the best so far, and which of these they are."""
+    found = [f for f in solver.best(experience, Query(), Watch(quiet=True), way) if f.proved]
+    return {f.at for f in found}, {f.kind for f in found}
 
 
 def listed(experience, most=150):
@@ -25,6 +63,7 @@ def listed(experience, most=150):
         truth = Truth(cut)
         if len(truth.final) > most:
             break
+    TRIED["random experiences"] += 1
     return cut, truth
 
 
@@ -34,76 +73,156 @@ def experiences(draw):
 
 
 def agree_on_parts(experience, truth):
-    facts = experience.facts()
-    assert answers((), facts) == set(truth.final)
-    for number in (1, 2, len(PARTS)):
-        for parts in combinations(PARTS, number):
-            assert answers(parts, facts) == truth.having(*parts), parts
+    for parts in EVERY:
+        with case(experience, parts):
+            expected = truth.having(*parts)
+            assert answers(parts, experience.facts()) == expected
+            assert searched(experience, *parts) == expected
 
 
-def agree_on_planarity(experience, truth):
-    pruned = set(truth.planar_levels()[-1])
-    assert pruned == truth.having("planar")
-    assert answers(("planar",), experience.facts()) == pruned
-    assert answers(("euler",), experience.facts()) == pruned
+def agree_on_bounds(experience, truth, bound):
+    with case(experience, ("bound",), "-c", f"places={bound}"):
+        expected = truth.having(bound=bound)
+        assert answers(("bound",), experience.facts(), "-c", f"places={bound}") == expected
+        assert searched(experience, places=bound) == expected
 
 
 def agree_on_preferences(experience, truth):
     facts, final = experience.facts(), truth.final
-    fewest = truth.least(lambda h: h.cost(), final)
-    flattest = truth.least(lambda h: h.genus(), final)
-    both = truth.least(lambda h: (h.genus(), *h.cost()), final)
-    assert answers(("minimal",), facts) == fewest
-    assert answers(("genus",), facts) == flattest
-    assert answers(("genus", "minimal"), facts) == both
-    assert answers(("closed", "boundary", "minimal"), facts) == truth.best(closed=True)
-    assert answers(("boundary", "minimal"), facts) == truth.best(closed=False)
+    orders = {
+        ("minimal",): lambda h: h.cost(),
+        ("genus",): lambda h: h.genus(),
+        ("genus", "minimal"): lambda h: (h.genus(), *h.cost()),
+    }
+    for parts, order in orders.items():
+        with case(experience, parts, "--opt-mode=optN"):
+            assert answers(parts, facts) == truth.least(order, final)
+            assert searched(experience, *parts) == truth.least(order, final)
+    for closed in (("closed",), ()):
+        parts = (*closed, "boundary", "minimal")
+        with case(experience, parts, "--opt-mode=optN"):
+            assert answers(parts, facts) == truth.best(closed=bool(closed))
+    with case(experience, ("closed", "boundary", "minimal"), "--opt-mode=optN"):
+        assert best(experience, search.hypotheses) == best(experience, solver.hypotheses)
+        expected = truth.best(closed=True) or truth.best(closed=False)
+        assert best(experience, search.hypotheses)[0] == expected
 
 
-@QUICK
-@given(experiences())
-def test_parts(case):
-    agree_on_parts(*case)
+def agree_on_the_tree(experience, truth):
+    """Levels of the tree are answers with a horizon, in both orders of the search; and with
+    planarity as pruning."""
+    for planar, levels in ((), truth.levels), (("planar",), truth.planar_levels()):
+        root = search.root(experience, Query(frozenset(planar)))
+        for order in search.breadth_first, search.depth_first:
+            counted = Counter(node.steps for node in order(root))
+            assert [counted[step] for step in range(len(levels))] == [*map(len, levels)]
+        for step, level in enumerate(levels):
+            with case(experience.cut(step), planar):
+                facts = experience.facts()
+                assert answers(planar, facts, "-c", f"horizon={step}") == set(level)
+                assert searched(experience, *planar, horizon=step) == set(level)
+                assert {at[:step] for at in level} <= set(levels[step - 1]) or not step
+
+
+def agree_with_the_checkers(experience, truth, most=20):
+    """Maps are sound, and have a property if and only if the checkers find no fault."""
+    properties = sorted({DEMANDS.get(part, part) for part in PARTS})
+    having = {part: truth.having(part) for part in properties}
+    for at in sorted(truth.final)[:: 1 + len(truth.final) // most]:
+        TRIED["maps judged by both checkers"] += 1
+        facts = [(step, *dstate) for step, dstate in enumerate(at)]
+        lacks = {part for part in properties if at not in having[part]}
+        with case(experience):
+            rules = by_rules(experience, facts, properties)
+            assert rules == by_definition(experience, facts, properties)
+            assert {rule for rule, _ in rules} == lacks
+
+
+def unnamed(experience, at):
+    """The map of a hypothesis without names: its places in the order in which they are
+    reached from the start by taking gateways clockwise."""
+    world = experience.map_of(at)
+    found = {at[0][0]: at[0][1]}
+    for place in (places := list(found)):
+        for slot in range(world.slots):
+            end = world.links.get((place, (slot + found[place]) % world.slots))
+            if end and end[0] not in found:
+                found[end[0]] = end[1]
+                places.append(end[0])
+
+    def renamed(gateway):
+        place, slot = gateway
+        return places.index(place), (slot - found[place]) % world.slots
+
+    links = frozenset((renamed(a), renamed(b)) for a, b in world.links.items())
+    stars = tuple(world.view((place, found[place])) for place in places)
+    return stars, links, renamed(at[-1])
+
+
+def have_no_two_the_same(experience, truth):
+    with case(experience):
+        assert len({unnamed(experience, at) for at in truth.final}) == len(truth.final)
+
+
+def mirrored(experience):
+    """The experience in the mirror: slot S is K - S."""
+
+    def mirror(slot):
+        return -slot % experience.slots
+
+    return replace(
+        experience,
+        views=tuple(frozenset(map(mirror, view)) for view in experience.views),
+        turns=tuple(map(mirror, experience.turns)),
+    )
+
+
+def are_as_many_in_the_mirror(experience, truth):
+    image = mirrored(experience)
+    for parts in EVERY:
+        with case(image, parts):
+            assert len(answers(parts, image.facts())) == len(truth.having(*parts))
+    for parts in ("minimal",), ("genus",), ("closed", "boundary", "minimal"):
+        with case(image, parts, "--opt-mode=optN"):
+            facts = image.facts(), experience.facts()
+            assert len(answers(parts, facts[0])) == len(answers(parts, facts[1]))
+
+
+PROPERTIES = [
+    agree_on_parts,
+    agree_on_preferences,
+    agree_on_the_tree,
+    agree_with_the_checkers,
+    have_no_two_the_same,
+    are_as_many_in_the_mirror,
+]
+
+
+@pytest.mark.parametrize("holds", PROPERTIES, ids=lambda holds: holds.__name__)
+def test_quick(holds):
+    @QUICK
+    @given(experiences())
+    def check(case):
+        holds(*case)
+
+    check()
 
 
 @QUICK
 @given(experiences(), st.data())
 def test_bounds(case, data):
-    experience, truth = case
-    bound = data.draw(st.integers(1, experience.steps + 1))
-    found = answers(("bound",), experience.facts(), "-c", f"places={bound}")
-    assert found == truth.having(bound=bound)
-
-
-@QUICK
-@given(experiences())
-def test_planarity_three_ways(case):
-    agree_on_planarity(*case)
-
-
-@QUICK
-@given(experiences())
-def test_preferences(case):
-    agree_on_preferences(*case)
-
-
-@QUICK
-@given(experiences())
-def test_horizons_are_the_levels_of_the_tree(case):
-    experience, truth = case
-    for step, level in enumerate(truth.levels):
-        assert answers((), experience.facts(), "-c", f"horizon={step}") == set(level)
+    agree_on_bounds(*case, bound=data.draw(st.integers(1, case[0].steps + 1)))
 
 
 @pytest.mark.long
-@pytest.mark.parametrize("block", range(10))
+@pytest.mark.parametrize("block", range(20))
 def test_many(block):
-    """A thousand longer experiences, at random but the same each time."""
+    """Two thousand longer experiences, at random but the same each time."""
     for number in range(100):
-        case = listed(random_experience(random.Random(f"{block}.{number}"), 13), 300)
-        agree_on_parts(*case)
-        agree_on_planarity(*case)
-        agree_on_preferences(*case)
+        experience, truth = listed(random_experience(random.Random(f"{block}.{number}"), 13), 300)
+        agree_on_bounds(experience, truth, 1 + number % (experience.steps + 1))
+        for holds in PROPERTIES:
+            holds(experience, truth)
 
 
 def test_the_generator_makes_what_it_promises():

@@ -15,6 +15,7 @@ from topomap.topology import Gateway
 
 At = Sequence[tuple[int, int, int]]  # at(T,P,S)
 Violation = tuple[str, int]
+STEP_RULES = {"exactly_one", "naming", "gateway", "view", "landmark", "schema"}
 
 
 def by_rules(experience: Experience, at: At, demands: Sequence[str] = ()) -> set[Violation]:
@@ -95,6 +96,7 @@ class Grown:
         self.slots, self.half, self.step = experience.slots, experience.slots // 2, step
         places = sorted({place for t, (place, _) in stands.items() if t <= step})
         self.stars = {place: sorted(experience.views[place]) for place in places}
+        self.dstate = stands.get(step)
         self.links: dict[Gateway, Gateway] = {}
         for t, out, arrival in _ways(experience, stands):
             if t <= step:
@@ -111,16 +113,18 @@ class Grown:
         """The direction straight across the place."""
         return gateway[0], (gateway[1] + self.half) % self.slots
 
-    def axis(self, gateway: Gateway) -> Gateway:
-        """A gateway and its opposite, as one."""
-        return gateway[0], gateway[1] % self.half
-
-    def axes(self) -> list[set[Gateway]]:
-        """Each path as the axes of its places."""
-        graph: nx.Graph[Gateway] = nx.Graph()
-        graph.add_nodes_from(self.axis((p, s)) for p, star in self.stars.items() for s in star)
-        graph.add_edges_from((self.axis(a), self.axis(b)) for a, b in self.links.items())
-        return [set(axes) for axes in nx.connected_components(graph)]
+    def paths(self) -> list[list[Gateway]]:
+        """Each path that is not circular, as its places with the slot of its heading."""
+        paths = []
+        for place, star in self.stars.items():
+            for slot in star:
+                for start in (place, slot), self.opposite((place, slot)):
+                    if self.opposite(start) not in self.links:
+                        path = [start, *map(self.opposite, self.ahead.get(start, []))]
+                        back = [self.opposite(heading) for heading in reversed(path)]
+                        if min(path, back) not in paths:
+                            paths.append(min(path, back))
+        return paths
 
     def path_twice(self, _: int) -> bool:
         return any(
@@ -173,6 +177,10 @@ class Grown:
                 faces.append([end for place, end in pairs if place in self.stars])
         return faces or [[]]
 
+    def genus(self) -> int:
+        """Genus, by Euler's formula."""
+        return (2 - len(self.stars) + len(self.links) // 2 - len(self.faces())) // 2
+
     def over(self, bound: int) -> bool:
         return len(self.stars) > bound
 
@@ -201,7 +209,7 @@ class Grown:
 
     def slanted(self, _: int) -> bool:
         """Whether two paths share two places, or three meet pairwise at three."""
-        paths = [{place for place, _ in axes} for axes in self.axes()]
+        paths = [{place for place, _ in path} for path in self.paths()]
         if any(len(a & b) > 1 for a, b in combinations(paths, 2)):
             return True
         meet = [(i, j) for i, j in combinations(range(len(paths)), 2) if paths[i] & paths[j]]

@@ -8,7 +8,7 @@ import sys
 from collections.abc import Iterable, Sequence
 from typing import Any, NoReturn
 
-from topomap import __version__, commands, search
+from topomap import __version__, commands, maps, search
 from topomap.errors import BAD_INPUT, INTERRUPTED, PARTIAL, InputError
 from topomap.experience import LARGEST
 from topomap.solver import OPTIMIZING, PARTS, solving
@@ -59,6 +59,7 @@ def _parser() -> Parser:
     _add_generate(group)
     _add_solve(group)
     _add_count(group)
+    _add_check(group)
     _add_search(group)
     _add_branching(group)
     _add_table(group)
@@ -197,12 +198,13 @@ def _environment(kinds: Any, kind: str, common: Parser, help: str, example: str)
     return added
 
 
-def _add_query(command: Parser, parts: Iterable[str]) -> None:
+def _add_query(command: Parser, parts: Iterable[str], horizon: bool = True) -> None:
     add = command.add_argument
     for part in parts:
         add(f"--{part}", action="store_true", help=PARTS[part])
     add("--bound", type=_number(int, 1), metavar="B", help="at most B places")
-    add("--horizon", type=_number(int, 0), metavar="T", help="cut the experience after step T")
+    if horizon:
+        add("--horizon", type=_number(int, 0), metavar="T", help="cut the experience after step T")
     add("--timeout", type=_number(float, 0.001), metavar="S", help="stop after S seconds")
     add("--json", action="store_true", help="write JSON")
     add("-o", "--output", metavar="FILE", help="file to write (default: stdout)")
@@ -260,6 +262,29 @@ def _add_count(group: Any) -> None:
     command.add_argument("instance", metavar="INSTANCE")
     _add_query(command, [part for part in PARTS if part not in OPTIMIZING])
     _add_resume(command)
+
+
+def _add_check(group: Any) -> None:
+    command = _command(
+        group,
+        "check",
+        commands.check,
+        "check maps that anyone made, by encodings/check.lp and by a second checker",
+        """\
+  topomap solve instances/grid-3x3-snake.lp --planar --json -o maps.json
+  topomap check instances/grid-3x3-snake.lp maps.json --planar""",
+    )
+    command.add_argument("instance", metavar="INSTANCE")
+    command.add_argument(
+        "maps",
+        metavar="MAPS.json",
+        help="from topomap solve --json or clingo --outf=2; a map needs at, [[T,P,S], ...], "
+        "and what else it has is verified",
+    )
+    command.add_argument(
+        "--truth", metavar="FILE", help="the real map (from generate --truth), for the key real"
+    )
+    _add_query(command, maps.DEMANDS, horizon=False)
 
 
 def _add_search(group: Any) -> None:

@@ -2,6 +2,7 @@
 
 import argparse
 import contextlib
+import dataclasses
 import hashlib
 import json
 import os
@@ -11,7 +12,8 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from topomap import beyond, branching, environment, figure4, network, search, solver
+from topomap import beyond, branching, environment, figure4, maps, network, search, solver
+from topomap.check import STEP_RULES, by_definition
 from topomap.errors import DONE, INTERRUPTED, NO, PARTIAL, InputError
 from topomap.experience import Experience, read
 from topomap.family import expand
@@ -172,18 +174,60 @@ def _found(
 
 def _truth(file: str, experience: Experience, horizon: int | None) -> TopologicalMap:
     """The real map of an experience, from a file that ``generate --truth`` wrote."""
-    try:
-        steps = json.loads(Path(file).read_text(encoding="utf-8"))["maps"][0]["at"]
-        at = tuple((int(place), int(slot)) for _, place, slot in steps)
-        if not all(0 <= p <= t and 0 <= s < experience.slots for t, (p, s) in enumerate(at)):
-            raise ValueError("no place or gateway of this instance")
-    except OSError as error:
-        raise InputError(f"{file}: {(error.strerror or str(error)).lower()}") from None
-    except (ValueError, LookupError, TypeError):
-        raise InputError(f"{file}: not what generate --truth writes") from None
+    entry = maps.read(file)[0].maps[:1]
+    at = [(step, place, slot) for step, place, slot in entry[0]["at"]] if entry else []
     if len(at) != experience.steps + 1:
         raise InputError(f"{file}: {len(at) - 1} steps, the instance has {experience.steps}")
-    return experience.map_of(at if horizon is None else at[: horizon + 1])
+    if wrong := sorted(STEP_RULES & {rule for rule, _ in by_definition(experience, at)}):
+        raise InputError(f"{file}: no map of this instance, it breaks {', '.join(wrong)}")
+    last = experience.steps if horizon is None else horizon
+    return experience.map_of(tuple((place, slot) for _, place, slot in sorted(at)[: last + 1]))
+
+
+def check(args: argparse.Namespace) -> int:
+    """Check maps that anyone made, by rules and by definition."""
+    experience = read(args.instance)
+    documents = maps.read(args.maps)
+    if len(documents) > 1:  # of several instances
+        name = Path(args.instance).name
+        documents = [d for d in documents if Path(str(d.claims.get("instance"))).name == name]
+    number = sum(len(document.maps) for document in documents)
+    if not number:
+        raise InputError(f"{args.maps}: no maps of {args.instance} in it")
+    truth = _truth(args.truth, experience, None) if args.truth else None
+    demands = [part for part in maps.DEMANDS if getattr(args, part)]
+    demands += [f"bound({args.bound})"] if args.bound else []
+    checked: list[maps.Verdict] = []
+    fault = None
+    with output(args.output) as out:
+        try:
+            with Watch(args.timeout) as watch:
+                for verdict in maps.verdicts(experience, documents, demands, truth):
+                    checked.append(verdict)
+                    watch.found += 1
+                    watch.tick()
+        except Stopped as stopped:
+            fault = f"{stopped}"
+        unsound = [verdict for verdict in checked if not verdict.sound]
+        if args.json:
+            answer = {
+                "instance": args.instance,
+                "demands": demands,
+                "unsound": [dataclasses.asdict(verdict) for verdict in unsound],
+                "checked": len(checked),
+                "maps": number,
+                "complete": not fault,
+                "fault": fault,
+            }
+            out.write(json.dumps(answer) + "\n")
+        else:
+            for verdict in unsound:
+                broken = [f"violation({rule},{step})" for rule, step in verdict.violations]
+                out.write(f"{verdict.where}: {'; '.join(broken + verdict.faults)}\n")
+            noun = "map" if number == 1 else "maps"
+            line = f"{number} {noun}, {len(unsound) or 'none'} unsound"
+            out.write(line + (f"; partial: {fault} after {len(checked)}\n" if fault else "\n"))
+    return _status(fault, not unsound)
 
 
 def count(args: argparse.Namespace) -> int:

@@ -44,8 +44,8 @@ def depth_first(node: Hypothesis, watch: Watch | None = None) -> Iterator[Hypoth
 
 
 def breadth_first(node: Hypothesis, watch: Watch | None = None) -> Iterator[Hypothesis]:
-    """The nodes step by step; memory holds two levels of the tree."""
-    level = [node.dstates]
+    """The nodes from this one down, step by step; memory holds two levels of the tree."""
+    level = [top := node.dstates]
     while level:
         children = []
         for number, at in enumerate(level):
@@ -55,6 +55,7 @@ def breadth_first(node: Hypothesis, watch: Watch | None = None) -> Iterator[Hypo
             if watch and number % OFTEN == 0:
                 watch.tick()
         level = children
+    node.goto(top)
 
 
 def best_first(node: Hypothesis, watch: Watch | None = None) -> Iterator[Hypothesis]:

@@ -1,0 +1,229 @@
+"""Maps that anyone made, read from JSON, and what is said of them held against ``at``.
+
+Read: what ``topomap solve --json`` writes, or ``generate --truth``; what ``clingo --outf=2``
+writes; or a list of maps. A map needs only ``at``, ``[[T,P,S], ...]``.
+"""
+
+import json
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import clingo
+
+from topomap.check import STEP_RULES, At, Grown, Violation, by_definition, by_rules
+from topomap.errors import InputError
+from topomap.experience import LARGEST, Experience
+from topomap.topology import Gateway, TopologicalMap
+
+DEMANDS = ("planar", "closed", "travelled", "boundary", "perpendicular")
+
+
+@dataclass(frozen=True)
+class Document:
+    """Maps, and what is said of all of them; ``where`` names it in messages."""
+
+    where: str
+    maps: list[dict[str, Any]]
+    claims: dict[str, Any] = field(default_factory=dict)
+
+    def demands(self) -> Iterator[str]:
+        """What the maps are said to have, as terms of ``check.lp``."""
+        for part in self.claims.get("parts", ()):
+            if part == "euler":
+                yield "planar"
+            elif part in DEMANDS:
+                yield part
+        if self.claims.get("bound") is not None:
+            yield f"bound({self.claims['bound']})"
+        if self.claims.get("kind") in ("optimal", "best so far"):
+            yield "boundary"
+        if self.claims.get("kind") == "optimal":
+            yield "closed"
+
+
+def read(path: str) -> list[Document]:
+    """The maps in a file. Raises InputError, one line, where it holds something else."""
+    try:
+        data = json.loads(Path(path).read_text(encoding="utf-8-sig"))
+    except OSError as error:
+        raise InputError(f"{path}: {(error.strerror or str(error)).lower()}") from None
+    except (ValueError, RecursionError):
+        raise InputError(f"{path}: not a JSON text") from None
+    if isinstance(data, dict) and "Call" in data:
+        return [_of_clingo(path, data)]
+    documents = data["results"] if isinstance(data, dict) and "results" in data else [data]
+    if not isinstance(documents, list):
+        raise InputError(f"{path}: results: no list")
+    many = len(documents) > 1
+    return [
+        _document(f"{path}: result {number}" if many else path, document)
+        for number, document in enumerate(documents, 1)
+    ]
+
+
+def _document(where: str, data: Any) -> Document:
+    if isinstance(data, list):
+        data = {"maps": data}
+    if isinstance(data, dict) and "at" in data:
+        data = {"maps": [data]}
+    if not isinstance(data, dict) or not isinstance(data.get("maps"), list):
+        raise InputError(f"{where}: no maps in it")
+    claims = {key: value for key, value in data.items() if key != "maps"}
+    bound, parts = claims.get("bound"), claims.get("parts", [])
+    if not isinstance(parts, list) or not (bound is None or _is_number(bound)):
+        raise InputError(f"{where}: parts is no list, or bound no number")
+    for number, entry in enumerate(data["maps"], 1):
+        if not isinstance(entry, dict) or not _is_at(entry.get("at")):
+            raise InputError(f"{where}: map {number}: at is not a list [[T,P,S], ...] of numbers")
+    return Document(where, data["maps"], claims)
+
+
+def _is_number(value: object) -> bool:
+    return isinstance(value, int) and not isinstance(value, bool) and abs(value) <= LARGEST
+
+
+def _is_at(at: object) -> bool:
+    return isinstance(at, list) and all(
+        isinstance(dstate, list) and len(dstate) == 3 and all(map(_is_number, dstate))
+        for dstate in at
+    )
+
+
+def _of_clingo(path: str, data: dict[str, Any]) -> Document:
+    maps = []
+    try:
+        for witness in (w for call in data["Call"] for w in call.get("Witnesses", [])):
+            atoms = [clingo.parse_term(atom) for atom in witness["Value"] if atom[:3] == "at("]
+            at = [[term.number for term in atom.arguments] for atom in atoms]
+            if not _is_at(at):
+                raise TypeError
+            # Under optimisation clingo gives the first of the best maps twice.
+            if "Costs" not in witness or {"at": sorted(at)} not in maps:
+                maps.append({"at": sorted(at)})
+    except (LookupError, TypeError, AttributeError, RuntimeError):
+        raise InputError(f"{path}: not what clingo --outf=2 writes") from None
+    return Document(path, maps)
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """What is wrong with a map: rules broken, with steps, and other faults in words."""
+
+    where: str
+    violations: list[Violation]
+    faults: list[str]
+
+    @property
+    def sound(self) -> bool:
+        return not self.violations and not self.faults
+
+
+def verdicts(
+    experience: Experience,
+    documents: list[Document],
+    demands: Sequence[str],
+    truth: TopologicalMap | None,
+) -> Iterator[Verdict]:
+    """A verdict on each map, by ``check.lp`` and by definition."""
+    for document in documents:
+        wanted = sorted({*demands, *document.demands()})
+        numbers: dict[At, int] = {}
+        for number, entry in enumerate(document.maps, 1):
+            at = tuple(sorted((step, place, slot) for step, place, slot in entry["at"]))
+            rules = by_rules(experience, at, wanted)
+            definition = by_definition(experience, at, wanted)
+            found = []
+            if not STEP_RULES & {rule for rule, _ in rules | definition}:
+                found = list(faults(experience, document, entry, at))
+                if rules != definition:
+                    found.append("check.lp and the check by definition do not agree on it")
+                if truth and "real" in entry:
+                    real = experience.map_of(tuple((p, s) for _, p, s in at)).isomorphic(truth)
+                    if real != entry["real"]:
+                        found.append(f"real: it is {'not ' * (not real)}the real map")
+            if numbers.setdefault(at, number) != number:
+                found.append(f"the same as map {numbers[at]}")
+            violations = sorted(rules | definition, key=lambda violation: violation[::-1])
+            yield Verdict(f"{document.where}: map {number}", violations, found)
+        if (said := document.claims.get("count", len(document.maps))) != len(document.maps):
+            fault = f"count is {said}, there are {len(document.maps)} maps"
+            yield Verdict(document.where, [], [fault])
+
+
+def faults(
+    experience: Experience, document: Document, entry: dict[str, Any], at: At
+) -> Iterator[str]:
+    """What is said of a map, by itself or with the others, and does not follow from ``at``."""
+    grown = Grown(experience, {step: (place, slot) for step, place, slot in at}, len(at) - 1)
+    for key, said in entry.items():
+        if key in ("at", "real"):
+            continue
+        if key not in KEYS:
+            yield f"{key}: no such key of a map"
+            continue
+        try:
+            same = KEYS[key](grown, experience, said)
+        except (LookupError, TypeError, ValueError):
+            same = False
+        if not same:
+            yield f"{key}: not what at says"
+    claims = document.claims
+    last = claims.get("horizon")
+    if "horizon" in claims and grown.step != min(experience.steps, last or experience.steps):
+        yield f"horizon: at ends after step {grown.step}"
+    if "cost" in claims and claims["cost"] != _cost(grown, claims):
+        yield f"cost: it is {_cost(grown, claims)}"
+
+
+def _cost(grown: Grown, claims: dict[str, Any]) -> list[int]:
+    """What was minimised, most important first."""
+    parts = claims.get("parts", ())
+    minimal = "minimal" in parts or claims.get("kind") in ("optimal", "best so far", "best-first")
+    genus = [grown.genus()] if "genus" in parts else []
+    return genus + ([len(grown.paths()), len(grown.stars)] if minimal else [])
+
+
+def _places(grown: Grown, experience: Experience, said: Any) -> bool:
+    return sorted((p["place"], p["gateways"], p["landmarks"]) for p in said) == [
+        (place, star, sorted(experience.landmarks[place])) for place, star in grown.stars.items()
+    ]
+
+
+def _links(grown: Grown, _: Experience, said: Any) -> bool:
+    ours = {tuple(sorted(link)) for link in grown.links.items()}
+    return sorted(tuple(sorted(map(_gateway, link))) for link in said) == sorted(ours)
+
+
+def _paths(grown: Grown, _: Experience, said: Any) -> bool:
+    def one_way(path: list[Gateway]) -> list[Gateway]:
+        return min(path, [grown.opposite(heading) for heading in reversed(path)])
+
+    ours = sorted(map(one_way, grown.paths()))
+    return sorted(one_way(list(map(_gateway, path))) for path in said) == ours
+
+
+def _faces(grown: Grown, _: Experience, said: Any) -> bool:
+    def from_least(face: list[Gateway]) -> list[Gateway]:
+        start = face.index(min(face)) if face else 0
+        return face[start:] + face[:start]
+
+    ours = sorted(map(from_least, grown.faces()))
+    return sorted(from_least(list(map(_gateway, face))) for face in said) == ours
+
+
+def _gateway(said: Any) -> Gateway:
+    place, slot = said
+    return place, slot
+
+
+KEYS: dict[str, Callable[[Grown, Experience, Any], bool]] = {
+    "places": _places,
+    "links": _links,
+    "paths": _paths,
+    "faces": _faces,
+    "genus": lambda grown, _, said: bool(grown.genus() == said),
+    "pending": lambda grown, _, said: sorted(map(_gateway, said)) == sorted(grown.pending()),
+    "dstate": lambda grown, _, said: _gateway(said) == grown.dstate,
+}
