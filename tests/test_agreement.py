@@ -179,7 +179,7 @@ def mirrored(experience):
 
 def are_as_many_in_the_mirror(experience, truth):
     image = mirrored(experience)
-    for parts in EVERY:
+    for parts in [(), *((part,) for part in PARTS), PARTS]:
         with case(image, parts):
             assert len(answers(parts, image.facts())) == len(truth.having(*parts))
     for parts in ("minimal",), ("genus",), ("closed", "boundary", "minimal"):
@@ -217,8 +217,8 @@ def test_bounds(case, data):
 @pytest.mark.long
 @pytest.mark.parametrize("block", range(20))
 def test_many(block):
-    """Two thousand longer experiences, at random but the same each time."""
-    for number in range(100):
+    """A thousand longer experiences, at random but the same each time."""
+    for number in range(50):
         experience, truth = listed(random_experience(random.Random(f"{block}.{number}"), 13), 300)
         agree_on_bounds(experience, truth, 1 + number % (experience.steps + 1))
         for holds in PROPERTIES:

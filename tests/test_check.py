@@ -1,0 +1,296 @@
+"""The two checkers: each rule of check.lp holds and bites at the right step, on maps made by
+hand and on maps with errors; and ``topomap check`` on maps that anyone made."""
+
+import json
+import random
+
+import pytest
+from conftest import ENCODINGS, TRIED, run
+from topomap import search
+from topomap.check import STEP_RULES, by_definition, by_rules
+from topomap.experience import parse
+from topomap.solver import Query
+from worlds import random_experience
+
+GRID = "instances/grid-3x3-snake.lp"
+CORRIDOR = ("0", "0: 0 2", "2: 0", "0: 0 2")
+SQUARE = ("0 3", "0: 0 3", "3: 0 3", "3: 0 3", "3: 0 1")
+LASSO = ("0 1 2", "0: 0 1 2 3", "0: 0 1 2", "1: 0", "0: 0 1 3", "1: 0 1 2 3")
+TRIANGLE = ("0 3", "0: 0 1", "1: 0 1", "1: 0 1")
+EARS = ("0 1 2 3", "0: 0 1", "1: 0 1", "1: 0 1 2 3", "1: 0 1", "1: 0 1", "1: 0 1 2 3")
+TWISTED = ("0 1", "0: 0 1", "1: 0 3", "3: 0 3")
+CORNERS = ("0 1", "0: 0 1", "1: 0 3")
+# The rule, what is seen ("turn: gateways", and landmarks), a sound map and a map that breaks
+# it, as a place and a gateway after each step, and the step at which it does.
+CASES = [
+    ("exactly_one", CORRIDOR, "0.0 1.0 2.0 1.2", "0.0 1.0 - 1.2", 2),
+    ("exactly_one", CORRIDOR, "0.0 1.0 2.0 1.2", "0.0 1.0 2.0 1.2 0.0", 4),
+    ("exactly_one", CORRIDOR, "0.0 1.0 2.0 1.2", "0.0 1.0/0.0 2.0 1.2", 1),
+    ("naming", CORRIDOR, "0.0 1.0 2.0 1.2", "0.0 2.0 2.0 2.0", 1),
+    ("naming", ("0 2", "2: 0 2"), "0.0 1.0", "0.2 1.0", 0),
+    ("gateway", CORNERS, "0.0 1.0 0.1", "0.0 1.0 0.2", 2),
+    ("view", ("0 1", "0: 0 1", "1: 0 1 3"), "0.0 1.0 2.0", "0.0 1.0 0.1", 2),
+    ("view", ("0 1 3", "0: 0 1", "1: 0 1"), "0.0 1.0 2.0", "0.0 1.0 0.3", 2),
+    ("landmark", ("0 a", "0: 0 2 a", "2: 0", "0: 0 2 a"), "0.0 1.0 2.0 1.2", "0.0 1.0 0.0 1.2", 2),
+    ("landmark", ("0", "0: 0 2", "2: 0", "0: 0 2 a"), "0.0 1.0 2.0", "0.0 1.0 2.0 1.2", 3),
+    ("landmark", ("0", "0: 0 2 a", "2: 0", "0: 0 2"), "0.0 1.0 2.0", "0.0 1.0 2.0 1.2", 3),
+    ("schema", CORRIDOR, "0.0 1.0 2.0 1.2", "0.0 1.0 2.0 3.0", 3),
+    ("schema", ("0 1", "0: 0 1"), "0.0 1.0", "0.0 0.0", 1),
+    ("path_twice", LASSO, "0.0 1.0 0.0 3.0 0.1 5.0", "0.0 1.0 0.0 3.0 0.1 1.1", 5),
+    ("path_twice", ("0 1", "0: 0 3"), "0.0 1.0", "0.0 0.1", 1),
+    ("path_circular", LASSO, "0.0 1.0 0.0 3.0 0.1 5.0", "0.0 1.0 0.0 3.0 0.1 1.2", 5),
+    ("planar", EARS, "0.0 1.0 2.0 0.2 4.0 5.0 6.0", "0.0 1.0 2.0 0.2 4.0 5.0 0.1", 6),
+    ("bound(3)", SQUARE, "0.0 1.0 2.0", "0.0 1.0 2.0 3.0 0.3", 3),
+    ("closed", SQUARE, "0.0 1.0 2.0 3.0 0.3", "0.0 1.0 2.0 3.0 4.0", 4),
+    ("travelled", SQUARE, "0.0 1.0 2.0 3.0 0.3", "0.0 1.0 2.0 3.0", 3),
+    ("travelled", ("0 2", "0: 0"), "0.0 1.0", "0.0", 0),
+    ("boundary", CORNERS, "0.0 1.0 2.0", "0.0 1.0 0.1", 2),
+    ("boundary", TWISTED, "0.0 1.0 2.0", "0.0 1.0 2.0 0.1", 3),
+    ("perpendicular", CORNERS, "0.0 1.0 2.0", "0.0 1.0 0.1", 2),
+    ("perpendicular", TRIANGLE, "0.0 1.0 2.0 3.0", "0.0 1.0 2.0 0.3", 3),
+]
+
+
+def seen(steps):
+    """The experience of such texts."""
+    facts = ["slots(4)."]
+    for step, text in enumerate(steps):
+        turn, _, view = text.rpartition(":")
+        facts += [f"turn({step},{turn})."] if step else []
+        facts += [
+            f"view({step},{word})." if word.isdigit() else f"landmark({step},{word})."
+            for word in view.split()
+        ]
+    return parse(" ".join(facts), "test")
+
+
+def placed(text):
+    return [
+        (step, *map(int, dstate.split(".")))
+        for step, dstates in enumerate(text.split())
+        for dstate in dstates.split("/")
+        if dstate != "-"
+    ]
+
+
+@pytest.mark.parametrize("judge", [by_rules, by_definition])
+@pytest.mark.parametrize(("rule", "steps", "sound", "broken", "step"), CASES)
+def test_a_rule_holds_and_bites(judge, rule, steps, sound, broken, step):
+    demands = [] if rule in (*STEP_RULES, "path_twice", "path_circular") else [rule]
+    assert not judge(seen(steps), placed(sound), demands)
+    found = judge(seen(steps), placed(broken), demands)
+    assert (rule, step) in found
+    assert demands == [] or found == {(rule, step)}
+
+
+def errors_in(draw, experience, at):
+    """The same with an error or two."""
+    wrong = list(at)
+    for _ in range(draw.choice((1, 1, 2))):
+        step = draw.randrange(len(wrong))
+        kind = draw.choice(("gone", "two", "place", "slot", "cut", "more"))
+        if kind == "gone" and len(wrong) > 1:
+            del wrong[step]
+        elif kind == "two":
+            wrong.append((wrong[step][0], draw.randrange(experience.steps + 1), 0))
+        elif kind == "place":
+            place = draw.randrange(-1, experience.steps + 2)
+            wrong[step] = wrong[step][0], place, wrong[step][2]
+        elif kind == "slot":
+            slot = draw.randrange(-1, experience.slots + 1)
+            wrong[step] = *wrong[step][:2], slot
+        elif kind == "cut":
+            del wrong[step + 1 :]
+        else:
+            wrong.append((draw.randrange(-2, experience.steps + 4), 0, 0))
+    return wrong
+
+
+def agree_on_errors(draw, steps=10):
+    """On maps with errors the checkers agree; what a broken step does to the map as a whole
+    is not defined, so there only the rules of steps count."""
+    demands = ["planar", "bound(3)", "closed", "travelled", "boundary", "perpendicular"]
+    experience = random_experience(draw, steps)
+    node = search.root(experience, Query(places=6))
+    for _ in search.best_first(node):
+        if node.steps == experience.steps:
+            break
+    sound = [(step, *dstate) for step, dstate in enumerate(node.dstates)]
+    for at in [sound, *(errors_in(draw, experience, sound) for _ in range(5))]:
+        TRIED["maps with errors judged by both checkers"] += 1
+        rules = by_rules(experience, at, demands)
+        definition = by_definition(experience, at, demands)
+        of_steps = [{v for v in found if v[0] in STEP_RULES} for found in (rules, definition)]
+        assert of_steps[0] == of_steps[1], (experience.facts(), at)
+        assert of_steps[0] or rules == definition, (experience.facts(), at)
+        assert at is not sound or not of_steps[0]
+
+
+def test_the_checkers_agree_on_errors():
+    for number in range(60):
+        agree_on_errors(random.Random(f"errors {number}"))
+
+
+@pytest.mark.long
+def test_the_checkers_agree_on_many_errors():
+    for number in range(2000):
+        agree_on_errors(random.Random(f"many errors {number}"), 14)
+
+
+@pytest.fixture
+def maps(tmp_path):
+    """The planar, closed maps of the 3x3 snake, as solve writes them."""
+    file = tmp_path / "maps.json"
+    assert run("topomap", "solve", GRID, "--planar", "--closed", "--json", "-o", file)
+    return file
+
+
+def test_maps_of_solve_are_sound(topomap, maps):
+    done = topomap("check", GRID, maps, "--planar", "--closed", "--bound", "12", "--json")
+    answer = json.loads(done.stdout)
+    assert done.returncode == 0
+    assert answer["unsound"] == []
+    assert answer["checked"] == answer["maps"] == 3
+    assert answer["demands"] == ["planar", "closed", "bound(12)"]
+
+
+@pytest.mark.parametrize("options", [["--opt-mode=optN"], []])
+def test_maps_of_clingo_are_checked(topomap, tmp_path, options):
+    file = tmp_path / "maps.json"
+    parts = ["closed", "boundary", *(["minimal"] if options else [])]
+    files = [ENCODINGS / f"{part}.lp" for part in ("topomap", *parts)]
+    file.write_text(run("clingo", *files, GRID, "0", "--outf=2", *options).stdout)
+    assert topomap("check", GRID, file, "--closed", "--boundary").returncode == 0
+    done = topomap("check", GRID, file, "--closed", "--planar")
+    assert done.returncode == 1
+    assert "violation(planar," in done.stdout
+
+
+def test_demands_that_a_document_makes_are_checked(topomap, maps):
+    document = json.loads(maps.read_text())
+    for key, value, fault in (
+        ("parts", ["closed", "perpendicular"], "violation(perpendicular,"),
+        ("bound", 8, "violation(bound(8),"),
+        ("horizon", 15, "horizon: at ends after step 16"),
+        ("cost", [1, 2], "cost: it is"),
+        ("count", 4, "count is 4, there are 3 maps"),
+    ):
+        maps.write_text(json.dumps({**document, key: value}))
+        done = topomap("check", GRID, maps)
+        assert (done.returncode, fault in done.stdout) == (1, True), done.stdout
+
+
+@pytest.mark.parametrize(
+    ("key", "change"),
+    [
+        ("places", lambda said: said[0]["gateways"].pop()),
+        ("places", lambda said: said[0]["landmarks"].append("a")),
+        ("links", lambda said: said.pop()),
+        ("links", lambda said: said.append(said[0])),
+        ("paths", lambda said: said[0].pop()),
+        ("paths", lambda said: said[0].reverse()),
+        ("faces", lambda said: said.append(said[0])),
+        ("faces", lambda said: said[0].reverse()),
+        ("pending", lambda said: said.append([0, 0])),
+        ("dstate", lambda said: said.reverse()),
+        ("dstate", lambda said: said.append("a")),
+    ],
+)
+def test_what_else_a_map_says_is_verified(topomap, maps, key, change):
+    document = json.loads(maps.read_text())
+    change(document["maps"][1][key])
+    maps.write_text(json.dumps(document))
+    done = topomap("check", GRID, maps)
+    assert done.returncode == 1
+    assert done.stdout == f"{maps}: map 2: {key}: not what at says\n3 maps, 1 unsound\n"
+
+
+def test_order_and_direction_do_not_matter(topomap, maps):
+    document = json.loads(maps.read_text())
+    for one in document["maps"]:
+        for key in ("at", "places", "links", "paths", "faces", "pending"):
+            one[key].reverse()
+        one["paths"] = [[[p, (s + 2) % 4] for p, s in reversed(path)] for path in one["paths"]]
+        one["faces"] = [face[1:] + face[:1] for face in one["faces"]]
+        one["links"] = [link[::-1] for link in one["links"]]
+    maps.write_text(json.dumps(document))
+    assert topomap("check", GRID, maps).returncode == 0
+
+
+def test_other_faults_of_maps(topomap, maps, tmp_path):
+    document = json.loads(maps.read_text())
+    first = document["maps"][0]
+    for entries, fault in (
+        ([{"at": first["at"]}, {"at": first["at"]}], "map 2: the same as map 1"),
+        ([{**first, "colour": 1}], "map 1: colour: no such key of a map"),
+        ([{"at": [*first["at"][:-1], [16, 0, 2]]}], "violation(gateway,16)"),
+        ([{"at": []}], "violation(exactly_one,0)"),
+    ):
+        maps.write_text(json.dumps(entries))
+        done = topomap("check", GRID, maps)
+        assert (done.returncode, fault in done.stdout) == (1, True), done.stdout
+
+
+def test_the_real_map_is_verified(topomap, tmp_path):
+    truth, instance = tmp_path / "truth.json", tmp_path / "grid.lp"
+    call = ["generate", "grid", "3", "3", "--route", "snake"]
+    assert not topomap(*call, "--truth", truth, "-o", instance).returncode
+    maps = tmp_path / "maps.json"
+    assert not topomap(
+        "solve", instance, "--closed", "--truth", truth, "--json", "-o", maps
+    ).returncode
+    assert topomap("check", instance, maps, "--truth", truth).returncode == 0
+    maps.write_text(maps.read_text().replace('"real": true', '"real": false'))
+    done = topomap("check", instance, maps, "--truth", truth)
+    assert (done.returncode, "real: it is the real map" in done.stdout) == (1, True)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        *("", "[", "3", "{}", "[]", "[" * 100000, '{"maps": 1}', '{"results": 1}', '{"Call": 3}'),
+        '[{"at": 1}]',
+        '[{"at": [[0, 0]]}]',
+        '[{"at": [[0, 0, "a"]]}]',
+        '[{"at": [[0, 0, true]]}]',
+        '[{"at": [[99999999999, 0, 0]]}]',
+        '{"Call": [{"Witnesses": [{"Value": ["at(0,0,a)"]}]}]}',
+        '{"maps": [{"at": []}], "parts": "planar"}',
+        '{"maps": [{"at": []}], "bound": "many"}',
+    ],
+)
+def test_what_is_no_document_of_maps_is_refused(topomap, tmp_path, text):
+    file = tmp_path / "maps.json"
+    file.write_text(text)
+    done = topomap("check", GRID, file)
+    assert done.returncode == 2
+    assert done.stdout == ""
+    (line,) = done.stderr.splitlines()
+    assert line.startswith(f"{file}: ")
+
+
+def test_check_lp_is_decided_while_grounding():
+    """So the aggregates in it are evaluated by gringo, and never reach clasp."""
+    at = [(step, step, 0) for step in range(17)]
+    text = "".join(f"at({t},{p},{s})." for t, p, s in at)
+    text += "demand((planar;bound(3);closed;travelled;boundary;perpendicular))."
+    done = run("clingo", ENCODINGS / "check.lp", GRID, "-", "--mode=gringo", "--text", input=text)
+    assert "violation(bound(3),3)." in done.stdout.splitlines()
+    assert not [line for line in done.stdout.splitlines() if ":-" in line or "{" in line]
+    assert not done.stderr
+
+
+def test_check_lp_gives_one_answer_without_anything():
+    done = run("clingo", ENCODINGS / "check.lp", "--outf=1", "0")
+    assert "ANSWER\nviolation(exactly_one,0).\n" in done.stdout
+    assert not done.stderr
+
+
+def test_a_file_of_several_instances(topomap, tmp_path):
+    maps = tmp_path / "maps.json"
+    other = "instances/grid-3x4-paper.lp"
+    assert not topomap("solve", GRID, other, "--optimal", "--json", "-o", maps).returncode
+    for instance, number in ((GRID, 2), (other, 8)):
+        done = topomap("check", instance, maps)
+        assert done.stdout == f"{number} maps, none unsound\n"
+    assert topomap("check", "instances/grid-4x4-snake.lp", maps).returncode == 2
