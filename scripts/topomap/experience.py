@@ -140,7 +140,9 @@ def _checked(
         raise InputError(f"{source}: slots({number}): K must be even, from 2 to {MOST_SLOTS}")
     last = max([0, *turns])
     for step in sorted({*views, *turns, *landmarks}):
-        if step < 0 or step > last:
+        if step < 0:
+            raise InputError(f"{source}: step {step}: steps are numbered from 0")
+        if step > last:
             raise InputError(f"{source}: step {step}: it has no turn (the last one is {last})")
     for step in range(last + 1):
         if step and step not in turns:
