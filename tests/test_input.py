@@ -130,18 +130,18 @@ def corrupted(draw):
 def agree(facts):
     """Whether there is an error; and that the reader refuses then, and only then, and
     for a fault that is among the errors."""
-    shown = errors(facts)
+    shown, message = errors(facts), None
     try:
         parse(facts, "made")
     except InputError as error:
         message = re.sub(r"^made(:\d+)?: ", "", str(error))
+    assert bool(shown) == bool(message), f"{facts}\nread: {message}\nshown: {shown}"
+    if message:
         matches = [(re.fullmatch(said, message), meant) for said, meant in KINDS.items()]
         (wanted,) = (meant.format(**match.groupdict()) for match, meant in matches if match)
         assert any(re.fullmatch(rf"error\({wanted}\)", error) for error in shown), (
             f"{facts}\nread: {message}\nshown: {shown}"
         )
-    else:
-        assert not shown, facts
     return bool(shown)
 
 
