@@ -4,6 +4,7 @@ The solver runs in a thread of its own, so that a time limit and Ctrl-C end it a
 moment, while it grounds too, and what was found until then is kept.
 """
 
+import contextlib
 import queue
 import signal
 import sys
@@ -37,6 +38,7 @@ OPTIMIZING = {"genus", "minimal"}
 Answer = TypeVar("Answer")
 SOLVER = "clingo"
 INTERRUPT = "interrupted"
+MEMORY = "out of memory"
 SIGNALS = (signal.SIGINT, signal.SIGTERM)
 
 
@@ -133,7 +135,7 @@ def answers(
     read: Callable[[clingo.Model], Answer | None],
 ) -> Iterator[Answer]:
     """What ``read`` makes of each model, in the solver's order; a model of which it
-    makes None is passed over. Raises Stopped at the time limit."""
+    makes None is passed over. Raises Stopped at the time limit, or out of memory."""
     found: queue.Queue[Answer | Exception | None] = queue.Queue(maxsize=1000)
     stop = threading.Event()
 
@@ -153,6 +155,7 @@ def answers(
 
     def work() -> None:
         try:
+            _prepare()
             control.ground()
             if not stop.is_set():
                 control.solve(on_model=take)
@@ -160,9 +163,13 @@ def answers(
         except Exception as error:  # raised again in the caller's thread
             put(error)
 
+    _prepare()
     control = query.control(experience.facts())
     thread = threading.Thread(target=work, name=SOLVER, daemon=True)
-    thread.start()
+    try:
+        thread.start()
+    except RuntimeError:  # there is no room for its stack
+        raise Stopped(MEMORY) from None
     try:
         while True:
             try:
@@ -172,6 +179,8 @@ def answers(
                 continue
             if item is None:
                 return
+            if isinstance(item, MemoryError):
+                raise Stopped(MEMORY)
             if isinstance(item, Exception):
                 raise item
             watch.tick()
@@ -180,6 +189,13 @@ def answers(
         stop.set()
         control.interrupt()
         thread.join(timeout=0.5)
+
+
+def _prepare() -> None:
+    """Have C++ allocate what it needs to report an error in this thread: when it is out of
+    memory it cannot, and aborts."""
+    with contextlib.suppress(RuntimeError):
+        clingo.parse_term("", logger=lambda *_: None)
 
 
 def solving() -> bool:
