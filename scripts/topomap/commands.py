@@ -4,15 +4,14 @@ import argparse
 import contextlib
 import json
 import shlex
-import sys
 from pathlib import Path
 from typing import Any
 
 from topomap import environment, figure4, network
-from topomap.errors import DONE, INTERRUPTED, NO, PARTIAL, InputError
+from topomap.errors import DONE, INTERRUPTED, NO, PARTIAL, InputError, say
 from topomap.experience import Experience, read
 from topomap.family import expand
-from topomap.files import output
+from topomap.files import output, text
 from topomap.generate import Instance, instance
 from topomap.report import Report
 from topomap.solver import INTERRUPT, PARTS, Query, Stopped, Watch, best, hypotheses
@@ -26,6 +25,8 @@ def generate(args: argparse.Namespace) -> int:
     target = args.output
     if target and (target.endswith("/") or Path(target).is_dir()):
         target = str(Path(target) / f"{made.name}.lp")
+    if target and args.truth and Path(target).resolve() == Path(args.truth).resolve():
+        raise InputError(f"{target}: it cannot be both --output and --truth")
     with contextlib.ExitStack() as files:
         if args.truth:
             at = [[step, *dstate] for step, dstate in enumerate(made.truth)]
@@ -50,7 +51,10 @@ def _instance(args: argparse.Namespace) -> Instance:
     if args.kind == "network":
         world, warnings = network.load(args.file, args.slots, args.north)
         for warning in warnings:
-            print(f"warning: {warning}", file=sys.stderr)
+            say(f"warning: {warning}")
+    elif args.rows * args.columns > environment.MOST_PLACES:
+        size = f"{args.rows} x {args.columns}"
+        raise InputError(f"topomap generate: {size}: more than {environment.MOST_PLACES} places")
     elif args.kind == "maze":
         world = environment.maze(args.rows, args.columns, args.thin, args.seed or 0)
     elif args.kind in ("hexagons", "triangles"):
@@ -126,18 +130,27 @@ def _solve_one(args: argparse.Namespace, experience: Experience, report: Report)
 
 def _truth(file: str, experience: Experience, horizon: int | None) -> TopologicalMap:
     """The real map of an experience, from a file that ``generate --truth`` wrote."""
+    content = text(file)
     try:
-        steps = json.loads(Path(file).read_text(encoding="utf-8"))["maps"][0]["at"]
-        at = tuple((int(place), int(slot)) for _, place, slot in steps)
-        if not all(0 <= p <= t and 0 <= s < experience.slots for t, (p, s) in enumerate(at)):
-            raise ValueError("no place or gateway of this instance")
-    except OSError as error:
-        raise InputError(f"{file}: {(error.strerror or str(error)).lower()}") from None
-    except (ValueError, LookupError, TypeError):
+        steps = json.loads(content)["maps"][0]["at"]
+        at = tuple((place, slot) for _, place, slot in steps)
+        if not all(type(number) is int for step in steps for number in step):
+            raise ValueError("other than whole numbers")
+    except (ValueError, LookupError, TypeError, RecursionError):
         raise InputError(f"{file}: not what generate --truth writes") from None
     if len(at) != experience.steps + 1:
         raise InputError(f"{file}: {len(at) - 1} steps, the instance has {experience.steps}")
-    return experience.map_of(at if horizon is None else at[: horizon + 1])
+    for step, (place, slot) in enumerate(at):
+        if not 0 <= place <= step or at[place] != (place, 0):
+            raise InputError(f"{file}: step {step}: there is no place {place}")
+        star = {(other + slot) % experience.slots for other in experience.views[step]}
+        if slot not in experience.views[place] or star != experience.views[place]:
+            raise InputError(f"{file}: step {step}: what is seen is not gateway {slot} of {place}")
+    truth = experience.map_of(at if horizon is None else at[: horizon + 1])
+    for end, other in truth.links.items():
+        if truth.links[other] != end:
+            raise InputError(f"{file}: place {end[0]}: two links at gateway {end[1]}")
+    return truth
 
 
 def count(args: argparse.Namespace) -> int:
@@ -145,12 +158,12 @@ def count(args: argparse.Namespace) -> int:
     experience = read(args.instance)
     figures: dict[str, Any] = {}
     fault = None
-    try:
-        with Watch(args.timeout) as watch:
-            tree(experience, _query(args), watch, figures)
-    except Stopped as stopped:
-        fault = str(stopped)
     with output(args.output) as out:
+        try:
+            with Watch(args.timeout) as watch:
+                tree(experience, _query(args), watch, figures)
+        except Stopped as stopped:
+            fault = str(stopped)
         if args.json:
             answer = {"instance": args.instance, **figures, "complete": not fault, "fault": fault}
             out.write(json.dumps(answer) + "\n")
@@ -174,7 +187,7 @@ def table(args: argparse.Namespace) -> int:
         try:
             for row in figure4.rows(args.jobs):
                 rows.append(row)
-                print(f"counted {len(rows)} of {len(figure4.COLUMNS)} columns", file=sys.stderr)
+                say(f"counted {len(rows)} of {len(figure4.COLUMNS)} columns")
         except Stopped:
             _show_table(args, rows, complete=False)
             raise KeyboardInterrupt from None  # the file keeps an older, complete table
@@ -215,6 +228,8 @@ def family(args: argparse.Namespace) -> int:
             if parsed.output or parsed.truth or parsed.json:
                 raise InputError("-o, --truth and --json have no place in a family")
             made = _instance(parsed)
+        except SystemExit:
+            raise InputError(f"{args.file}:{line}: --help has no place in a family") from None
         except InputError as error:
             raise InputError(f"{args.file}:{line}: {error}") from None
         if made.name in calls:
@@ -222,19 +237,21 @@ def family(args: argparse.Namespace) -> int:
                 f"{args.file}:{line}: a second instance named {made.name}; --name can part them"
             )
         calls[made.name] = call
+    # At any moment what was made is listed, so that a call that was cut short can be repeated.
     made_before = folder / ".family"
-    old = made_before.read_text(encoding="utf-8").splitlines() if made_before.exists() else []
+    old = text(made_before).splitlines() if made_before.exists() else []
+    for name in set(old) - set(calls):
+        for left in (folder / f"{name}.lp", folder / f"{name}.args"):
+            if left.parent == folder:
+                left.unlink(missing_ok=True)
     with output(str(made_before), parents=True) as file:
         file.writelines(f"{name}\n" for name in calls)
-    for name in set(old) - set(calls):
-        (folder / f"{name}.args").unlink(missing_ok=True)
-        (folder / f"{name}.lp").unlink(missing_ok=True)
     for name, call in calls.items():
         path = folder / f"{name}.args"
-        text = shlex.join(call) + "\n"
-        if not path.exists() or path.read_text(encoding="utf-8") != text:
+        words = shlex.join(call) + "\n"
+        if not path.exists() or text(path) != words:
             with output(str(path)) as file:
-                file.write(text)
+                file.write(words)
     print(
         json.dumps({"instances": list(calls), "complete": True}) if args.json else "\n".join(calls)
     )

@@ -36,7 +36,6 @@ PARTS = {
 OPTIMIZING = {"genus", "minimal"}
 
 Answer = TypeVar("Answer")
-SOLVER = "clingo"
 INTERRUPT = "interrupted"
 MEMORY = "out of memory"
 SIGNALS = (signal.SIGINT, signal.SIGTERM)
@@ -108,7 +107,8 @@ class Watch:
 
     def tick(self) -> None:
         """Show progress; raises Stopped past the time limit and after a signal."""
-        self.bar.update(self.found - self.bar.n)
+        with contextlib.suppress(OSError):  # stderr cannot be written
+            self.bar.update(self.found - self.bar.n)
         if self.signal:
             raise Stopped(INTERRUPT)
         if self.deadline is not None and time.monotonic() > self.deadline:
@@ -125,7 +125,8 @@ class Watch:
     def __exit__(self, *_: object) -> None:
         for number, handler in self.handlers:
             signal.signal(number, handler)
-        self.bar.close()
+        with contextlib.suppress(OSError):
+            self.bar.close()
 
 
 def answers(
@@ -165,7 +166,7 @@ def answers(
 
     _prepare()
     control = query.control(experience.facts())
-    thread = threading.Thread(target=work, name=SOLVER, daemon=True)
+    thread = threading.Thread(target=work, daemon=True)
     try:
         thread.start()
     except RuntimeError:  # there is no room for its stack
@@ -187,7 +188,7 @@ def answers(
             yield item
     finally:
         stop.set()
-        control.interrupt()
+        control.interrupt()  # clingo heeds it as soon as it has grounded
         thread.join(timeout=0.5)
 
 
@@ -196,12 +197,6 @@ def _prepare() -> None:
     memory it cannot, and aborts."""
     with contextlib.suppress(RuntimeError):
         clingo.parse_term("", logger=lambda *_: None)
-
-
-def solving() -> bool:
-    """Whether a solver that was told to stop still runs: clingo cannot be interrupted
-    while it grounds."""
-    return any(thread.name == SOLVER for thread in threading.enumerate())
 
 
 @dataclass(frozen=True)
