@@ -22,6 +22,9 @@ exit status: 0 done; 1 the answer is no (the table differs, there is no map);
 class Parser(argparse.ArgumentParser):
     """An argument parser whose errors are one line."""
 
+    def _print_message(self, message: str, file: Any = None) -> None:
+        sys.stdout.write(message)  # argparse's own passes over what cannot be written
+
     def error(self, message: str) -> NoReturn:
         raise InputError(f"{self.prog}: {message} (see {self.prog} --help)")
 

@@ -186,26 +186,22 @@ def table(args: argparse.Namespace) -> int:
     with output(args.output, parents=True) as file:
         try:
             for row in figure4.rows(args.jobs):
-                rows.append(row)
+                rows = sorted([*rows, row], key=lambda row: (row["environment"], row["planarity"]))
                 say(f"counted {len(rows)} of {len(figure4.COLUMNS)} columns")
         except Stopped:
             _show_table(args, rows, complete=False)
             raise KeyboardInterrupt from None  # the file keeps an older, complete table
-        result = _show_table(args, rows, complete=True)
-        json.dump(result, file, indent=1)
+        json.dump({"complete": True, "rows": rows}, file, indent=1)
         file.write("\n")
+    _show_table(args, rows, complete=True)
     return NO if any(map(figure4.differences, rows)) else DONE
 
 
-def _show_table(
-    args: argparse.Namespace, rows: list[dict[str, Any]], complete: bool
-) -> dict[str, Any]:
-    rows.sort(key=lambda row: (row["environment"], row["planarity"]))
-    result = {"complete": complete, "rows": rows}
+def _show_table(args: argparse.Namespace, rows: list[dict[str, Any]], complete: bool) -> None:
     different = [cell for row in rows for cell in figure4.differences(row)]
     if args.json:
-        print(json.dumps(result))
-        return result
+        print(json.dumps({"complete": complete, "rows": rows}))
+        return
     if rows:
         print(figure4.text(rows))
     for cell in different:
@@ -214,7 +210,6 @@ def _show_table(
         print(f"partial: {len(rows)} of {len(figure4.COLUMNS)} columns")
     elif not different:
         print("Every figure is the paper's.")
-    return result
 
 
 def family(args: argparse.Namespace) -> int:
