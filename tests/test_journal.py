@@ -1,18 +1,17 @@
 """Long runs are resumed where they were cut, and come to the same numbers."""
 
 import json
-import os
 import random
+import re
 import subprocess
-import time
-from pathlib import Path
 
 import pytest
-from conftest import BIN, ROOT, TRIED
-from topomap import beyond, solver
+from conftest import BIN, ROOT, TRIED, run
+from topomap import beyond, search, solver
 from topomap.cli import main
-from topomap.errors import InputError
+from topomap.experience import read
 from topomap.journal import Journal
+from topomap.solver import Query, Watch
 
 GRID = str(ROOT / "instances/grid-3x3-snake.lp")
 PAPER = str(ROOT / "instances/grid-3x4-paper.lp")
@@ -31,39 +30,195 @@ class Cut(Exception):
     """A run is cut."""
 
 
-@pytest.fixture
-def cut_after(monkeypatch):
-    """Cut a run when so many units are done, as a kill would: nothing is tidied up."""
-    commit = Journal.commit
+def cut_after(patch, units):
+    """Have a run cut when it has done so many units more, as a kill would."""
+    commit, left = Journal.commit, iter(range(units))
 
-    def cut(units):
-        left = iter(range(units))
+    def commit_or_cut(self):
+        commit(self)
+        if next(left, None) is None:
+            raise Cut
 
-        def commit_or_cut(self):
-            commit(self)
-            if next(left, None) is None:
-                raise Cut
+    patch.setattr(Journal, "commit", commit_or_cut)
 
-        monkeypatch.setattr(Journal, "commit", commit_or_cut)
 
-    yield cut
+def ordered(file):
+    """A file's lines, maps in order and without their numbers: within a part of the tree
+    clingo gives them in an order of its own."""
+    return sorted(re.sub(r"^map \d+|,$", "", line) for line in file.read_text().splitlines())
 
 
 @pytest.mark.parametrize("name", LONG_RUNS)
-def test_a_run_that_was_cut_goes_on(tmp_path, cut_after, monkeypatch, name):
+def test_a_run_that_was_cut_goes_on(tmp_path, monkeypatch, name):
     whole, file = tmp_path / "whole", tmp_path / "file"
     assert main([*LONG_RUNS[name], "-o", str(whole)]) == 0
     draw = random.Random(name)
     cuts = 0
     while not file.exists():
         with monkeypatch.context() as patch:
-            patch.setattr(Journal, "commit", Journal.commit)
-            cut_after(draw.randrange(60))
+            cut_after(patch, draw.randrange(*((100, 500) if "count" in name else (10, 40))))
             try:
                 assert main([*LONG_RUNS[name], "-o", str(file), "--resume"]) == 0
             except Cut:
                 cuts += 1
-                assert [p.name for p in tmp_path.iterdir()].count("file") == 0
-    assert cuts > 1
+                TRIED["cuts of long runs, resumed"] += 1
+                assert not file.exists()
+    assert cuts > 0
+    assert ordered(file) == ordered(whole)
+    assert {path.name for path in tmp_path.iterdir()} == {"whole", "file"}
+
+
+@pytest.mark.parametrize("way", [search, solver])
+def test_what_is_done_is_not_done_again(tmp_path, monkeypatch, way):
+    """A resumed run asks for the parts that are left, and no more."""
+    file = str(tmp_path / "maps.json")
+    call = ["solve", PAPER, "--by", "clingo" if way is solver else "search", "-o", file]
+    with monkeypatch.context() as patch:
+        cut_after(patch, 39)
+        with pytest.raises(Cut):
+            main(call)
+    asked = []
+    ask = way.hypotheses
+
+    def spy(*arguments, cubes, **options):
+        asked.append(cubes)
+        return ask(*arguments, cubes=cubes, **options)
+
+    monkeypatch.setattr(way, "hypotheses", spy)
+    assert main([*call, "--resume"]) == 0
+    (left,) = asked
+    assert len(left) == len(search.cubes(read(PAPER), Query())) - 40
+
+
+def test_without_resume_a_run_begins_anew(tmp_path, monkeypatch):
+    file = tmp_path / "count.txt"
+    with monkeypatch.context() as patch:
+        cut_after(patch, 20)
+        with pytest.raises(Cut):
+            main(["count", PAPER, "-o", str(file)])
+    part = tmp_path / "count.txt.part"
+    part.write_text(part.read_text().replace("[1, 1]", "[7, 7]"))
+    assert main(["count", PAPER, "-o", str(file)]) == 0
+    assert file.read_text() == run("topomap", "count", PAPER).stdout
+
+
+@pytest.mark.parametrize(
+    ("change", "fault"),
+    [
+        (lambda text: text, None),
+        (lambda text: text[:-3], None),  # cut in the middle of a line
+        (lambda text: text[:20], None),  # or of the first one
+        (lambda text: "", None),
+        (lambda text: text.replace('"facts"', '"other"'), "of another run"),
+        (lambda text: "no journal\n" + text, "of another run"),
+    ],
+)
+def test_a_journal_that_is_torn_or_of_another_run(tmp_path, monkeypatch, capsys, change, fault):
+    file, part = tmp_path / "count.txt", tmp_path / "count.txt.part"
+    with monkeypatch.context() as patch:
+        cut_after(patch, 20)
+        with pytest.raises(Cut):
+            main(["count", PAPER, "-o", str(file)])
+    part.write_text(changed := change(part.read_text()))
+    status = main(["count", PAPER, "-o", str(file), "--resume"])
+    if fault:
+        assert (status, fault in capsys.readouterr().err) == (2, True)
+        assert part.read_text() == changed
+    else:
+        assert status == 0
+        assert file.read_text() == run("topomap", "count", PAPER).stdout
+
+
+def test_other_queries_and_instances_are_other_runs(tmp_path, monkeypatch, capsys):
+    file = str(tmp_path / "maps")
+    with monkeypatch.context() as patch:
+        cut_after(patch, 3)
+        with pytest.raises(Cut):
+            main(["solve", PAPER, "-o", file])
+    for call in (
+        ["solve", PAPER, "--closed"],
+        ["solve", GRID],
+        ["solve", PAPER, "--by", "search"],
+        ["solve", PAPER, "--bound", "9"],
+        ["count", PAPER],
+    ):
+        assert main([*call, "-o", file, "--resume"]) == 2
+        assert "of another run" in capsys.readouterr().err
+    assert main(["solve", PAPER, "--json", "--limit", "3", "-o", file, "--resume"]) == 3
+
+
+def test_two_runs_do_not_share_a_journal(tmp_path, capsys):
+    file = str(tmp_path / "count.txt")
+    with Journal(file, {}):
+        assert main(["count", GRID, "-o", file]) == 2
+    assert "another run is writing it" in capsys.readouterr().err
+
+
+def test_resume_needs_a_file(capsys):
+    assert main(["count", GRID, "--resume"]) == 2
+    assert main(["count", GRID, "--resume", "-o", "/dev/null"]) == 2
+    assert capsys.readouterr().err.count("it needs an output file") == 2
+
+
+def test_a_partial_answer_is_kept_and_gone_on_with(tmp_path):
+    file = tmp_path / "maps.json"
+    call = ["solve", PAPER, "--json", "-o", str(file)]
+    assert main([*call, "--limit", "200"]) == 3
+    partial = json.loads(file.read_text())
+    assert (len(partial["maps"]), partial["complete"]) == (200, False)
+    assert main([*call, "--resume"]) == 0
+    whole = json.loads(file.read_text())
+    assert (len(whole["maps"]), whole["complete"]) == (1465, True)
+    assert all(one in whole["maps"] for one in partial["maps"])
+    assert [path.name for path in tmp_path.iterdir()] == ["maps.json"]
+
+
+def test_beyond_goes_on(tmp_path, monkeypatch):
+    monkeypatch.setattr(beyond, "COLUMNS", [(3, 3, None, False), (2, 4, 8, True), (3, 3, 9, True)])
+    whole, file = tmp_path / "whole.json", tmp_path / "file.json"
+    call = ["table", "--beyond", "--jobs", "1", "--json", "-o"]
+    assert main([*call, str(whole)]) == 0
+    for units in (50, 30, 1000):
+        with monkeypatch.context() as patch:
+            cut_after(patch, units)
+            if units < 1000:
+                with pytest.raises(Cut):
+                    main([*call, str(file), "--resume"])
+            else:
+                assert main([*call, str(file), "--resume"]) == 0
     assert file.read_bytes() == whole.read_bytes()
-    assert {p.name for p in tmp_path.iterdir()} == {"whole", "file"}
+    row = json.loads(whole.read_text())["rows"][1]
+    assert (row["final"], row["clingo"]) == (88, {"final": 88})
+
+
+def test_clingo_may_not_finish_beyond(monkeypatch):
+    monkeypatch.setattr(beyond, "COLUMNS", [(4, 4, 16, False)])
+    (row,) = beyond.rows(1, Watch(quiet=True), Journal(), limit=0.01)
+    assert (row["final"], row["clingo"]) == (23685, {})
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("block", range(5))
+def test_killed_again_and_again(tmp_path, block):
+    """kill -9, at random moments, until a run comes to its end."""
+    draw = random.Random(f"killed {block}")
+    calls = [
+        ["count", SNAKE, "--bound", "16"],
+        ["solve", SNAKE, "--bound", "16", "--json"],
+        ["solve", SNAKE, "--bound", "16", "--by", "search"],
+    ]
+    for call in calls:
+        whole, file = tmp_path / "whole", tmp_path / "file"
+        assert run("topomap", *call, "-o", whole).returncode == 0
+        for _ in range(100):
+            process = subprocess.Popen([BIN / "topomap", *call, "-o", file, "--resume"])
+            try:
+                assert process.wait(draw.uniform(0.3, 3)) == 0
+                break
+            except subprocess.TimeoutExpired:
+                process.kill()
+                process.wait()
+                TRIED["kills of long runs, resumed"] += 1
+        assert ordered(file) == ordered(whole)
+        for left in tmp_path.iterdir():
+            left.unlink()

@@ -2,16 +2,17 @@
 
 import argparse
 import math
-import os
-import signal
+import re
 import sys
 from collections.abc import Iterable, Sequence
+from functools import cache
 from typing import Any, NoReturn
 
 from topomap import __version__, commands, maps, search
-from topomap.errors import BAD_INPUT, INTERRUPTED, PARTIAL, InputError
+from topomap.environment import MOST_STEPS
+from topomap.errors import BAD_INPUT, DONE, INTERRUPTED, PARTIAL, InputError, say
 from topomap.experience import LARGEST
-from topomap.solver import OPTIMIZING, PARTS, solving
+from topomap.solver import OPTIMIZING, PARTS
 
 STATUS = """\
 exit status: 0 done; 1 the answer is no (the table differs, there is no map);
@@ -21,32 +22,40 @@ exit status: 0 done; 1 the answer is no (the table differs, there is no map);
 class Parser(argparse.ArgumentParser):
     """An argument parser whose errors are one line."""
 
+    def _print_message(self, message: str, file: Any = None) -> None:
+        sys.stdout.write(message)  # argparse's own passes over what cannot be written
+
     def error(self, message: str) -> NoReturn:
         raise InputError(f"{self.prog}: {message} (see {self.prog} --help)")
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command; returns its exit status."""
-    signal.signal(signal.SIGTERM, signal.default_int_handler)
-    status = BAD_INPUT
     try:
-        args = _parser().parse_args(arguments)
-        status = args.run(args)
+        try:
+            args = _parser().parse_args(arguments)
+            status: int = args.run(args)
+        except SystemExit:  # --help and --version
+            status = DONE
         sys.stdout.flush()
+        return status
     except InputError as error:
-        print(error, file=sys.stderr)
+        say(str(error))
+        return BAD_INPUT
     except KeyboardInterrupt:
-        print("interrupted", file=sys.stderr)
-        status = INTERRUPTED
+        say("interrupted")
+        return INTERRUPTED
+    except MemoryError:
+        say("topomap: out of memory")
+        return PARTIAL
     except BrokenPipeError:
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        status = PARTIAL
-    if solving():
-        sys.stderr.flush()
-        os._exit(status)  # clingo still grounds, in a thread that nothing can stop
-    return status
+        return PARTIAL
+    except OSError as error:
+        say(f"{error.filename or 'standard output'}: {(error.strerror or str(error)).lower()}")
+        return BAD_INPUT
 
 
+@cache
 def _parser() -> Parser:
     parser = Parser(
         prog="topomap",
@@ -84,7 +93,7 @@ def _number(kind: type, least: float, most: float = LARGEST) -> Any:
 
     def number(text: str) -> Any:
         try:
-            value = kind(text)
+            value = kind(text) if re.fullmatch(r"[!-^a-~]+", text) else math.nan
         except ValueError:
             value = math.nan
         if not least <= value <= most:
@@ -116,7 +125,9 @@ def _add_generate(group: Any) -> None:
         help="snake; walk (random); tour (over every way); compass letters such as ESSENN "
         "(4 slots; with 8, apart by commas: N,NE,E); or absolute slots: 0,3,1",
     )
-    add("--steps", type=_number(int, 0), metavar="N", help="cut the route after N steps")
+    add(
+        "--steps", type=_number(int, 0, MOST_STEPS), metavar="N", help="cut the route after N steps"
+    )
     add(
         "--start",
         metavar="PLACE",
@@ -124,7 +135,7 @@ def _add_generate(group: Any) -> None:
     )
     add(
         "--facing",
-        type=int,
+        type=_number(int, 0),
         metavar="SLOT",
         help="gateway stood at first (default: the one first left by)",
     )
@@ -135,7 +146,7 @@ def _add_generate(group: Any) -> None:
         metavar="RATE",
         help="share of places that carry their own name as a landmark",
     )
-    add("--seed", type=int, metavar="N", help="for walk, signs and maze (default: 0)")
+    add("--seed", type=_number(int, 0), metavar="N", help="for walk, signs and maze (default: 0)")
     add("--name", help="name of the instance (default: made from the arguments)")
     add("--truth", metavar="FILE", help="also write the true hypothesis, for solve --truth")
     add("--json", action="store_true", help="print a summary as JSON")
@@ -179,7 +190,7 @@ def _add_generate(group: Any) -> None:
     )
     sub.add_argument(
         "--north",
-        type=float,
+        type=_number(float, -LARGEST),
         default=0.0,
         metavar="DEGREES",
         help="bearing of slot 0, clockwise of north (default: %(default)g)",

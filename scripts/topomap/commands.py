@@ -7,17 +7,16 @@ import hashlib
 import json
 import os
 import shlex
-import sys
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
+from typing import IO, Any
 
 from topomap import beyond, branching, environment, figure4, maps, network, search, solver
 from topomap.check import STEP_RULES, by_definition
-from topomap.errors import DONE, INTERRUPTED, NO, PARTIAL, InputError
+from topomap.errors import DONE, INTERRUPTED, NO, PARTIAL, InputError, say
 from topomap.experience import Experience, read
 from topomap.family import expand
-from topomap.files import output
+from topomap.files import output, text
 from topomap.generate import Instance, instance
 from topomap.journal import Journal
 from topomap.report import Report
@@ -32,6 +31,8 @@ def generate(args: argparse.Namespace) -> int:
     target = args.output
     if target and (target.endswith("/") or Path(target).is_dir()):
         target = str(Path(target) / f"{made.name}.lp")
+    if target and args.truth and Path(target).resolve() == Path(args.truth).resolve():
+        raise InputError(f"{target}: it cannot be both --output and --truth")
     with contextlib.ExitStack() as files:
         if args.truth:
             at = [[step, *dstate] for step, dstate in enumerate(made.truth)]
@@ -56,7 +57,10 @@ def _instance(args: argparse.Namespace) -> Instance:
     if args.kind == "network":
         world, warnings = network.load(args.file, args.slots, args.north)
         for warning in warnings:
-            print(f"warning: {warning}", file=sys.stderr)
+            say(f"warning: {warning}")
+    elif args.rows * args.columns > environment.MOST_PLACES:
+        size = f"{args.rows} x {args.columns}"
+        raise InputError(f"topomap generate: {size}: more than {environment.MOST_PLACES} places")
     elif args.kind == "maze":
         world = environment.maze(args.rows, args.columns, args.thin, args.seed or 0)
     elif args.kind in ("hexagons", "triangles"):
@@ -235,13 +239,16 @@ def count(args: argparse.Namespace) -> int:
     experience = read(args.instance)
     figures: dict[str, Any] = {}
     fault = None
-    with Journal(args.output, _run(args, experience), args.resume) as journal:
+    with (
+        Journal(args.output, _run(args, experience), args.resume) as journal,
+        output(args.output) as out,
+    ):
         try:
             with Watch(args.timeout) as watch:
                 tree(experience, _query(args), watch, journal, figures)
         except Stopped as stopped:
             fault = str(stopped)
-        _write_figures(args, figures, fault)
+        _write_figures(args, out, figures, fault)
         journal.complete = not fault
     return _status(fault, bool(figures["final"]))
 
@@ -255,15 +262,17 @@ def search_tree(args: argparse.Namespace) -> int:
     node = search.root(experience, query)
     tally = Tally(node.experience.steps)
     fault = None
-    try:
-        with Watch(args.timeout) as watch:
-            for _ in search.ORDERS[args.order](node, watch):
-                tally.add(node)
-                watch.found = tally.per_step[-1]
-    except Stopped as stopped:
-        fault = f"{stopped}; the figures are of the nodes searched until then"
-    _write_figures(args, tally.figures(), fault)
-    return _status(fault and str(fault).partition(";")[0], bool(tally.per_step[-1]))
+    with output(args.output) as out:
+        try:
+            with Watch(args.timeout) as watch:
+                for _ in search.ORDERS[args.order](node, watch):
+                    tally.add(node)
+                    watch.found = tally.per_step[-1]
+        except Stopped as stopped:
+            fault = str(stopped)
+        note = "; the figures are of the nodes searched until then"
+        _write_figures(args, out, tally.figures(), fault, note)
+    return _status(fault, bool(tally.per_step[-1]))
 
 
 def _best_first(args: argparse.Namespace, experience: Experience, query: Query) -> int:
@@ -284,19 +293,25 @@ def _best_first(args: argparse.Namespace, experience: Experience, query: Query) 
     return _status(fault, bool(report.count))
 
 
-def _write_figures(args: argparse.Namespace, figures: dict[str, Any], fault: str | None) -> None:
-    with output(args.output) as out:
-        if args.json:
-            answer = {"instance": args.instance, **figures, "complete": not fault, "fault": fault}
-            out.write(json.dumps(answer) + "\n")
-            return
-        out.write("hypotheses after each step: ")
-        out.write(" ".join(map(str, figures["per_step"])) + "\n")
-        for key in KEYS:
-            known = "not counted" if figures[key] is None else f"{figures[key]:,}"
-            out.write(f"{figure4.WORDS[key]:<42}{known:>12}\n")
-        if fault:
-            out.write(f"partial: {fault}\n")
+def _write_figures(
+    args: argparse.Namespace,
+    out: IO[str],
+    figures: dict[str, Any],
+    fault: str | None,
+    note: str = "",
+) -> None:
+    """Write what ``count`` gives, or ``search``."""
+    if args.json:
+        answer = {"instance": args.instance, **figures, "complete": not fault, "fault": fault}
+        out.write(json.dumps(answer) + "\n")
+        return
+    out.write("hypotheses after each step: ")
+    out.write(" ".join(map(str, figures["per_step"])) + "\n")
+    for key in KEYS:
+        known = "not counted" if figures[key] is None else f"{figures[key]:,}"
+        out.write(f"{figure4.WORDS[key]:<42}{known:>12}\n")
+    if fault:
+        out.write(f"partial: {fault}{note}\n")
 
 
 def branching_nodes(args: argparse.Namespace) -> int:
@@ -305,14 +320,14 @@ def branching_nodes(args: argparse.Namespace) -> int:
     query = _query(args).having("planar")
     nodes: list[branching.BranchingNode] = []
     fault = None
-    try:
-        with Watch(args.timeout) as watch:
-            for node in branching.branching(search.root(experience, query), watch):
-                nodes.append(node)
-    except Stopped as stopped:
-        fault = str(stopped)
-    totals = branching.summary(nodes)
     with output(args.output) as out:
+        try:
+            with Watch(args.timeout) as watch:
+                for node in branching.branching(search.root(experience, query), watch):
+                    nodes.append(node)
+        except Stopped as stopped:
+            fault = str(stopped)
+        totals = branching.summary(nodes)
         if args.json:
             tail = {"complete": not fault, "fault": fault}
             answer = {"instance": args.instance, "summary": totals}
@@ -345,29 +360,25 @@ def table(args: argparse.Namespace) -> int:
             counted = figure4.rows(jobs)
         try:
             for row in counted:
-                rows.append(row)
-                print(f"counted {len(rows)} of {columns} columns", file=sys.stderr)
+                rows = sorted([*rows, row], key=lambda row: (row["environment"], row["planarity"]))
+                say(f"counted {len(rows)} of {columns} columns")
         except Stopped:
             _show_table(args, rows, columns)
             raise KeyboardInterrupt from None  # the file keeps an older, complete table
-        result = _show_table(args, rows, columns)
-        json.dump(result, file, indent=1)
+        json.dump({"complete": True, "rows": rows}, file, indent=1)
         file.write("\n")
         if args.beyond:
             journal.complete = True
+    _show_table(args, rows, columns)
     return NO if any(map(figure4.differences, rows)) else DONE
 
 
-def _show_table(
-    args: argparse.Namespace, rows: list[dict[str, Any]], columns: int
-) -> dict[str, Any]:
-    rows.sort(key=lambda row: (row["environment"], row["planarity"]))
+def _show_table(args: argparse.Namespace, rows: list[dict[str, Any]], columns: int) -> None:
     complete = len(rows) == columns
-    result = {"complete": complete, "rows": rows}
     different = [cell for row in rows for cell in figure4.differences(row)]
     if args.json:
-        print(json.dumps(result))
-        return result
+        print(json.dumps({"complete": complete, "rows": rows}))
+        return
     if rows:
         print(figure4.text(rows))
     for cell in different:
@@ -376,7 +387,6 @@ def _show_table(
         print(f"partial: {len(rows)} of {columns} columns")
     elif not different:
         print(beyond.VERDICT if args.beyond else "Every figure is the paper's.")
-    return result
 
 
 def family(args: argparse.Namespace) -> int:
@@ -390,6 +400,8 @@ def family(args: argparse.Namespace) -> int:
             if parsed.output or parsed.truth or parsed.json:
                 raise InputError("-o, --truth and --json have no place in a family")
             made = _instance(parsed)
+        except SystemExit:
+            raise InputError(f"{args.file}:{line}: --help has no place in a family") from None
         except InputError as error:
             raise InputError(f"{args.file}:{line}: {error}") from None
         if made.name in calls:
@@ -397,19 +409,21 @@ def family(args: argparse.Namespace) -> int:
                 f"{args.file}:{line}: a second instance named {made.name}; --name can part them"
             )
         calls[made.name] = call
+    # At any moment what was made is listed, so that a call that was cut short can be repeated.
     made_before = folder / ".family"
-    old = made_before.read_text(encoding="utf-8").splitlines() if made_before.exists() else []
+    old = text(made_before).splitlines() if made_before.exists() else []
+    for name in set(old) - set(calls):
+        for left in (folder / f"{name}.lp", folder / f"{name}.args"):
+            if left.parent == folder:
+                left.unlink(missing_ok=True)
     with output(str(made_before), parents=True) as file:
         file.writelines(f"{name}\n" for name in calls)
-    for name in set(old) - set(calls):
-        (folder / f"{name}.args").unlink(missing_ok=True)
-        (folder / f"{name}.lp").unlink(missing_ok=True)
     for name, call in calls.items():
         path = folder / f"{name}.args"
-        text = shlex.join(call) + "\n"
-        if not path.exists() or path.read_text(encoding="utf-8") != text:
+        words = shlex.join(call) + "\n"
+        if not path.exists() or text(path) != words:
             with output(str(path)) as file:
-                file.write(text)
+                file.write(words)
     print(
         json.dumps({"instances": list(calls), "complete": True}) if args.json else "\n".join(calls)
     )

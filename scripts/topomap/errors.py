@@ -1,7 +1,22 @@
 """What ends a command, and the exit status it ends with."""
 
+import contextlib
+import sys
+
 DONE, NO, BAD_INPUT, PARTIAL, INTERRUPTED = 0, 1, 2, 3, 130
 
 
 class InputError(Exception):
     """Bad input or usage; the message is one line that names file, step and fault."""
+
+
+def of_file(path: object, error: OSError) -> InputError:
+    """What the system says of a file."""
+    return InputError(f"{path}: {(error.strerror or str(error)).lower()}")
+
+
+def say(message: str) -> None:
+    """A message on stderr: one line, whatever names are in it; lost if it cannot be written."""
+    line = "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in message)
+    with contextlib.suppress(OSError):
+        print(line, file=sys.stderr, flush=True)

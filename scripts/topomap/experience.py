@@ -12,12 +12,14 @@ from pathlib import Path
 
 import clingo
 
+from topomap import files
 from topomap.errors import InputError
 from topomap.topology import Gateway, Place, TopologicalMap
 
 DState = tuple[int, int]
 LARGEST = 2**31 - 1  # what clingo's numbers hold
 MOST_SLOTS = 10**6  # sums of slots then stay below it
+DEEPEST = 100  # clingo's parser crashes on terms that are very deep
 ARITY = {"slots": 1, "view": 2, "turn": 2, "landmark": 2}
 
 
@@ -91,13 +93,7 @@ def explore(
 
 def read(path: str | Path) -> Experience:
     """The experience in an instance file. Raises InputError, one line, on bad input."""
-    try:
-        text = Path(path).read_text(encoding="utf-8-sig")
-    except OSError as error:
-        raise InputError(f"{path}: {(error.strerror or str(error)).lower()}") from None
-    except ValueError:
-        raise InputError(f"{path}: not a text file") from None
-    return parse(text, str(path))
+    return parse(files.text(path), str(path))
 
 
 def parse(text: str, source: str) -> Experience:
@@ -110,10 +106,12 @@ def parse(text: str, source: str) -> Experience:
         name, arguments = fact.name, fact.arguments
         if not fact.positive or ARITY.get(name) != len(arguments):
             known = ", ".join(f"{known}/{arity}" for known, arity in ARITY.items())
-            raise InputError(f"{source}:{line}: {fact} is not a fact over {known}")
+            raise InputError(f"{source}:{line}: {_cut(str(fact))} is not a fact over {known}")
         numbers = arguments[:1] if name == "landmark" else arguments
         if any(argument.type != clingo.SymbolType.Number for argument in numbers):
-            raise InputError(f"{source}:{line}: {fact}: a step or a slot is a whole number")
+            raise InputError(
+                f"{source}:{line}: {_cut(str(fact))}: a step or a slot is a whole number"
+            )
         if name == "slots":
             slots.add(arguments[0].number)
         elif name == "landmark":
@@ -140,7 +138,9 @@ def _checked(
         raise InputError(f"{source}: slots({number}): K must be even, from 2 to {MOST_SLOTS}")
     last = max([0, *turns])
     for step in sorted({*views, *turns, *landmarks}):
-        if step < 0 or step > last:
+        if step < 0:
+            raise InputError(f"{source}: step {step}: steps are numbered from 0")
+        if step > last:
             raise InputError(f"{source}: step {step}: it has no turn (the last one is {last})")
     for step in range(last + 1):
         if step and step not in turns:
@@ -171,10 +171,12 @@ def _checked(
 
 # Outside a block comment: its beginning, a line comment, the two stops of an interval, a
 # string, a full stop, or other text. Block comments are nested.
-_TOKEN = re.compile(r'%\*|%[^\n]*|\.\.|"(?:[^"\\\n]|\\.)*"|\.|[^%".]+|"', re.DOTALL)
+_STRING = r'"(?:[^"\\\n]++|\\.)*+"'
+_TOKEN = re.compile(rf'%\*|%[^\n]*|\.\.|{_STRING}|\.|[^%".]+|"', re.DOTALL)
 _COMMENT = re.compile(r"%\*|\*%|[^%*]+|[%*]", re.DOTALL)
 _FACT = re.compile(r"-?[a-z]\w*\(.*\)", re.DOTALL)
-_SPACE = re.compile(r'("(?:[^"\\\n]|\\.)*")|\s+')
+_SPACE = re.compile(rf"({_STRING})|\s+", re.DOTALL)
+_BRACKET = re.compile(rf"{_STRING}|[(|)]", re.DOTALL)
 
 
 def _facts(text: str, source: str) -> Iterator[tuple[int, clingo.Symbol]]:
@@ -205,16 +207,32 @@ def _fact(text: str, source: str, line: int) -> clingo.Symbol:
     refused = InputError(f"{source}:{line}: {_short(text)} is not a ground fact")
     if not _FACT.fullmatch(text):
         raise refused
+    if len(text) > DEEPEST and _depth(text) > DEEPEST:
+        raise InputError(f"{source}:{line}: {_short(text)} is nested deeper than {DEEPEST}")
     try:
         symbol = clingo.parse_term(text, logger=lambda *_: None)
     except RuntimeError:
         raise refused from None
     # clingo computes, and wraps numbers that are too large, without a word.
     if str(symbol) != _SPACE.sub(r"\1", text):
-        raise InputError(f"{source}:{line}: {_short(text)} is no plain fact, clingo has {symbol}")
+        has = _cut(str(symbol))
+        raise InputError(f"{source}:{line}: {_short(text)} is no plain fact, clingo has {has}")
     return symbol
 
 
+def _depth(text: str) -> int:
+    """How deep the brackets of a text are nested, or more."""
+    depth = deepest = 0
+    for bracket in _BRACKET.findall(text):
+        depth += (bracket in "(|") - (bracket == ")")
+        deepest = max(deepest, depth)
+    return deepest
+
+
 def _short(text: str) -> str:
-    line = " ".join(text.split())
-    return repr(line if len(line) <= 40 else line[:37] + "...")
+    return repr(_cut(text))
+
+
+def _cut(text: str) -> str:
+    line = " ".join(text[:1000].split())
+    return line if len(line) <= 40 else line[:37] + "..."

@@ -5,29 +5,30 @@ A line is the arguments of ``topomap generate``, without ``-o``; ``{3..6}`` and
 """
 
 import itertools
+import math
 import re
 import shlex
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from topomap.errors import InputError
+from topomap.files import text
 
+MOST = 10**5
 _CHOICE = re.compile(r"\{([^{}]*)\}")
 
 
 def expand(file: str | Path) -> Iterator[tuple[int, list[str]]]:
     """The generate calls of a family file, each with its line."""
-    try:
-        lines = Path(file).read_text(encoding="utf-8").splitlines()
-    except OSError as error:
-        raise InputError(f"{file}: {(error.strerror or str(error)).lower()}") from None
-    except ValueError:
-        raise InputError(f"{file}: not a text file") from None
-    for number, line in enumerate(lines, 1):
+    left = MOST
+    for number, line in enumerate(text(file).splitlines(), 1):
         pieces = _CHOICE.split(line.partition("#")[0])
         fixed, choices = pieces[::2], [_values(choice) for choice in pieces[1::2]]
+        left -= math.prod(map(len, choices))
+        if left < 0:
+            raise InputError(f"{file}:{number}: more than {MOST} lines, choices multiplied")
         for values in itertools.product(*choices):
-            call = "".join(itertools.chain(*zip(fixed, [*values, ""], strict=True)))
+            call = "".join(itertools.chain(*zip(fixed, [*map(str, values), ""], strict=True)))
             try:
                 arguments = shlex.split(call)
             except ValueError as error:
@@ -36,9 +37,8 @@ def expand(file: str | Path) -> Iterator[tuple[int, list[str]]]:
                 yield number, arguments
 
 
-def _values(choice: str) -> list[str]:
-    bounds = re.fullmatch(r"(\d+)\.\.(\d+)", choice)
+def _values(choice: str) -> Sequence[object]:
+    bounds = re.fullmatch(r"([0-9]{1,9})\.\.([0-9]{1,9})", choice)
     if bounds:
-        first, last = map(int, bounds.groups())
-        return [str(value) for value in range(first, last + 1)]
+        return range(int(bounds[1]), int(bounds[2]) + 1)
     return choice.split(",")

@@ -1,15 +1,45 @@
-"""Output files: the old one or the whole new one, never a part."""
+"""Files: read whole, within a limit; written so that the old one or the whole new one is
+there, never a part."""
 
 import contextlib
+import fcntl
 import os
 import sys
 import tempfile
 from collections.abc import Iterator
-from errno import EISDIR
+from errno import EISDIR, ELOOP
 from pathlib import Path
 from typing import IO
 
-from topomap.errors import InputError
+from topomap.errors import InputError, of_file
+
+MOST_BYTES = 2**25
+_TEMPORARY = ".topomap-"
+
+
+def data(path: str | Path, most: int = MOST_BYTES) -> bytes:
+    """The bytes of a file, ``most`` at most. Raises InputError where it cannot be read."""
+    try:
+        with Path(path).open("rb") as file:
+            content = file.read(most + 1)
+    except OSError as error:
+        raise of_file(path, error) from None
+    except ValueError:
+        raise InputError(f"{path}: not the name of a file") from None
+    if len(content) > most:
+        raise InputError(f"{path}: larger than {most >> 20} MiB")
+    return content
+
+
+def text(path: str | Path, most: int = MOST_BYTES) -> str:
+    """The text of a file. Raises InputError where there is none."""
+    try:
+        content = data(path, most).decode("utf-8-sig")
+    except UnicodeDecodeError:
+        raise InputError(f"{path}: not a text file") from None
+    if "\0" in content:
+        raise InputError(f"{path}: not a text file")
+    return content
 
 
 @contextlib.contextmanager
@@ -17,32 +47,61 @@ def output(path: str | None, parents: bool = False) -> Iterator[IO[str]]:
     """A text to write: standard output without a path, else a temporary file beside
     the named one that takes its place when all is written; ``parents`` makes its folder.
     Raises InputError where that cannot be."""
-    if path is None:
-        yield sys.stdout
-        return
-    target = Path(path).resolve()
     try:
+        if path is None:
+            yield sys.stdout
+            sys.stdout.flush()
+            return
+        target = Path(os.path.realpath(path))
+        if target.is_symlink():
+            raise OSError(ELOOP, os.strerror(ELOOP))
         if parents:
             target.parent.mkdir(parents=True, exist_ok=True)
         if target.is_dir():
             raise IsADirectoryError(EISDIR, os.strerror(EISDIR))
-        if target.exists() and not target.is_file():
-            with target.open("w", encoding="utf-8") as device:
+        if Path(path).exists() and not Path(path).is_file():
+            with Path(path).open("w", encoding="utf-8", errors="backslashreplace") as device:
                 yield device
             return
-        with tempfile.NamedTemporaryFile(
-            "w", encoding="utf-8", dir=target.parent, prefix=f".{target.name}.", delete=False
-        ) as text:
+        with _temporary(target.parent) as file:
             try:
-                yield text
-                text.flush()
-                Path(text.name).chmod(0o666 & ~_umask())
-                Path(text.name).replace(target)
+                yield file
+                file.flush()
+                Path(file.name).chmod(0o666 & ~_umask())
+                Path(file.name).replace(target)
             except BaseException:
-                Path(text.name).unlink()
+                Path(file.name).unlink()
                 raise
+    except BrokenPipeError:
+        raise
     except OSError as error:
-        raise InputError(f"{path}: {(error.strerror or str(error)).lower()}") from None
+        name = "standard output" if path is None else path or "an empty name"
+        raise of_file(name, error) from None
+    except ValueError:
+        raise InputError(f"{path}: not the name of a file") from None
+
+
+def _temporary(folder: Path) -> IO[str]:
+    """A new file in a folder, locked while its writer lives. A writer that was killed
+    leaves one without a lock: these go."""
+    for left in folder.glob(f"{_TEMPORARY}*"):
+        with contextlib.suppress(OSError), left.open() as old:
+            fcntl.flock(old, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            left.unlink()
+    while True:
+        file = tempfile.NamedTemporaryFile(  # noqa: SIM115
+            "w",
+            encoding="utf-8",
+            errors="backslashreplace",
+            dir=folder,
+            prefix=_TEMPORARY,
+            delete=False,
+        )
+        with contextlib.suppress(OSError):  # no locks in this file system: nothing is cleaned
+            fcntl.flock(file, fcntl.LOCK_EX)
+        if os.fstat(file.fileno()).st_nlink:  # else another writer took it for a left one
+            return file
+        file.close()
 
 
 def _umask() -> int:

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any, BinaryIO
 
 from topomap import __version__
-from topomap.errors import InputError
+from topomap.errors import InputError, of_file
 
 DONE = b"done\n"
 
@@ -48,7 +48,7 @@ class Journal:
         except BlockingIOError:
             raise InputError(f"{self.path}: another run is writing it") from None
         except OSError as error:
-            raise InputError(f"{self.path}: {(error.strerror or str(error)).lower()}") from None
+            raise of_file(self.path, error) from None
 
     def _read(self, head: str) -> None:
         self._file.seek(0)
@@ -100,7 +100,7 @@ class Journal:
             if flush:
                 self._file.flush()
         except OSError as error:
-            raise InputError(f"{self.path}: {(error.strerror or str(error)).lower()}") from None
+            raise of_file(self.path, error) from None
 
     def __enter__(self) -> "Journal":
         return self

@@ -7,7 +7,6 @@ writes; or a list of maps. A map needs only ``at``, ``[[T,P,S], ...]``.
 import json
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
-from pathlib import Path
 from typing import Any
 
 import clingo
@@ -15,8 +14,10 @@ import clingo
 from topomap.check import STEP_RULES, At, Grown, Violation, by_definition, by_rules
 from topomap.errors import InputError
 from topomap.experience import LARGEST, Experience
+from topomap.files import text
 from topomap.topology import Gateway, TopologicalMap
 
+MOST_BYTES = 2**32
 DEMANDS = ("planar", "closed", "travelled", "boundary", "perpendicular")
 
 
@@ -46,9 +47,7 @@ class Document:
 def read(path: str) -> list[Document]:
     """The maps in a file. Raises InputError, one line, where it holds something else."""
     try:
-        data = json.loads(Path(path).read_text(encoding="utf-8-sig"))
-    except OSError as error:
-        raise InputError(f"{path}: {(error.strerror or str(error)).lower()}") from None
+        data = json.loads(text(path, MOST_BYTES))
     except (ValueError, RecursionError):
         raise InputError(f"{path}: not a JSON text") from None
     if isinstance(data, dict) and "Call" in data:

@@ -8,16 +8,19 @@ are left out; a way is the straight line between its ends.
 import io
 import math
 import re
+import warnings
 from collections import Counter
 from pathlib import Path
 from typing import Any
-from xml.etree.ElementTree import ParseError
 
 import networkx as nx
+from defusedxml.common import DefusedXmlException
+from defusedxml.ElementTree import fromstring
 
 from topomap.environment import Environment, by_bearing, flat_bearing, plain
 from topomap.errors import InputError
-from topomap.experience import MOST_SLOTS
+from topomap.experience import LARGEST, MOST_SLOTS
+from topomap.files import data
 from topomap.topology import Place
 
 Point = tuple[float, float]
@@ -34,7 +37,7 @@ def load(file: str | Path, slots: int, north: float) -> tuple[Environment, list[
     graph.remove_edges_from(loops)
     lone = list(nx.isolates(graph))
     parts = nx.number_connected_components(nx.Graph(graph)) - len(lone)
-    warnings = [
+    told = [
         f"{file}: {what}: {number}"
         for what, number in (
             ("loops left out", len(loops)),
@@ -50,7 +53,7 @@ def load(file: str | Path, slots: int, north: float) -> tuple[Environment, list[
     unprojected = _unprojected(graph, points)
     if "crs" not in graph.graph:
         units = "degrees" if unprojected else "plane"
-        warnings.append(f"{file}: no crs in it; coordinates taken to be: {units}")
+        told.append(f"{file}: no crs in it; coordinates taken to be: {units}")
 
     def bearing(here: Place, there: Place) -> float:
         (x, y), (to_x, to_y) = points[here], points[there]
@@ -72,21 +75,26 @@ def load(file: str | Path, slots: int, north: float) -> tuple[Environment, list[
         f"slot 0 at {plain(north)} degrees clockwise of north",
         *_provenance(graph),
     )
-    return Environment(path.stem, call, world, notes=notes), warnings
+    return Environment(path.stem, call, world, notes=notes), told
 
 
 def _read(file: str | Path) -> "nx.Graph[Any]":
+    content = data(file)
     try:
-        data = Path(file).read_bytes()
-    except OSError as error:
-        raise InputError(f"{file}: {(error.strerror or str(error)).lower()}") from None
-    if b"<!DOCTYPE" in data or b"<!ENTITY" in data:
-        raise InputError(f"{file}: it declares a document type or entities, which is refused")
-    try:
-        return nx.read_graphml(io.BytesIO(data))
-    except (ParseError, nx.NetworkXException, ValueError, LookupError, TypeError) as error:
-        reason = " ".join(str(error).split())
+        fromstring(content, forbid_dtd=True)
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            graph: nx.Graph[Any] = nx.read_graphml(io.BytesIO(content))
+    except DefusedXmlException:
+        raise InputError(
+            f"{file}: it declares a document type or entities, which is refused"
+        ) from None
+    except MemoryError:
+        raise
+    except Exception as error:  # networkx has all kinds of errors for what it cannot read
+        reason = " ".join(str(error).split())[:200]
         raise InputError(f"{file}: not a GraphML file that networkx reads: {reason}") from None
+    return graph
 
 
 def _ways(graph: "nx.Graph[Any]") -> list[tuple[Place, Place]]:
@@ -110,7 +118,7 @@ def _point(file: str | Path, graph: "nx.Graph[Any]", place: Place) -> Point:
                 point = float(attributes[x]), float(attributes[y])
             except (TypeError, ValueError):
                 point = math.nan, math.nan
-            if all(map(math.isfinite, point)):
+            if all(abs(number) <= LARGEST for number in point):
                 return point
     raise InputError(f"{file}: place {place} has no coordinates (x, y or lon, lat)")
 

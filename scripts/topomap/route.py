@@ -2,6 +2,7 @@
 
 import itertools
 import random
+import re
 from collections.abc import Iterator
 
 import networkx as nx
@@ -40,12 +41,13 @@ def letters(text: str, slots: int) -> list[int]:
     """Slots of a route given as compass letters (4 or 8 slots) or as numbers: words
     apart by commas; a word that is no direction is read letter by letter."""
     words = [word.strip() for word in text.split(",")]
-    if all(word.isdecimal() for word in words):
+    if all(re.fullmatch("[0-9]{1,9}", word) for word in words):
         return [int(word) for word in words]
+    shown = text if len(text) <= 40 else text[:37] + "..."
     names = COMPASS.get(slots)
     if names is None:
         raise InputError(
-            f"route {text!r}: with {slots} slots a route is numbers apart by commas "
+            f"route {shown!r}: with {slots} slots a route is numbers apart by commas "
             "(compass letters need 4 or 8)"
         )
     route: list[int] = []
@@ -53,7 +55,7 @@ def letters(text: str, slots: int) -> list[int]:
         for direction in [word] if word in names or not word else word:
             if direction not in names:
                 raise InputError(
-                    f"route {text!r}: step {len(route) + 1}: {direction!r} is none of "
+                    f"route {shown!r}: step {len(route) + 1}: {direction!r} is none of "
                     + " ".join(names)
                 )
             route.append(names.index(direction))

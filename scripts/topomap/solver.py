@@ -4,6 +4,7 @@ The solver runs in a thread of its own, so that a time limit and Ctrl-C end it a
 moment, while it grounds too, and what was found until then is kept.
 """
 
+import contextlib
 import queue
 import signal
 import sys
@@ -35,8 +36,8 @@ OPTIMIZING = {"genus", "minimal"}
 
 Answer = TypeVar("Answer")
 Cube = tuple[DState, ...]  # the first dstates of a hypothesis
-SOLVER = "clingo"
 INTERRUPT = "interrupted"
+MEMORY = "out of memory"
 SIGNALS = (signal.SIGINT, signal.SIGTERM)
 
 
@@ -106,7 +107,8 @@ class Watch:
 
     def tick(self) -> None:
         """Show progress; raises Stopped past the time limit and after a signal."""
-        self.bar.update(self.found - self.bar.n)
+        with contextlib.suppress(OSError):  # stderr cannot be written
+            self.bar.update(self.found - self.bar.n)
         if self.signal:
             raise Stopped(INTERRUPT)
         if self.deadline is not None and time.monotonic() > self.deadline:
@@ -123,7 +125,8 @@ class Watch:
     def __exit__(self, *_: object) -> None:
         for number, handler in self.handlers:
             signal.signal(number, handler)
-        self.bar.close()
+        with contextlib.suppress(OSError):
+            self.bar.close()
 
 
 def answers(
@@ -135,7 +138,7 @@ def answers(
 ) -> Iterator[Answer | None]:
     """What ``read`` makes of each model, in the solver's order; a model of which it makes
     None is passed over. With ``cubes``, the models that begin with the first of them, then
-    a None, and so on. Raises Stopped at the time limit."""
+    a None, and so on. Raises Stopped at the time limit, or out of memory."""
     found: queue.Queue[Answer | Exception | None] = queue.Queue(maxsize=1000)
     stop = threading.Event()
 
@@ -155,6 +158,7 @@ def answers(
 
     def work() -> None:
         try:
+            _prepare()
             control.ground()
             for cube in [()] if cubes is None else cubes:
                 if not stop.is_set():
@@ -165,9 +169,13 @@ def answers(
         except Exception as error:  # raised again in the caller's thread
             put(error)
 
+    _prepare()
     control = query.control(experience.facts())
-    thread = threading.Thread(target=work, name=SOLVER, daemon=True)
-    thread.start()
+    thread = threading.Thread(target=work, daemon=True)
+    try:
+        thread.start()
+    except RuntimeError:  # there is no room for its stack
+        raise Stopped(MEMORY) from None
     try:
         while True:
             try:
@@ -177,13 +185,15 @@ def answers(
                 continue
             if isinstance(item, StopIteration):
                 return
+            if isinstance(item, MemoryError):
+                raise Stopped(MEMORY)
             if isinstance(item, Exception):
                 raise item
             watch.tick()
             yield item
     finally:
         stop.set()
-        control.interrupt()
+        control.interrupt()  # clingo heeds it as soon as it has grounded
         thread.join(timeout=0.5)
 
 
@@ -194,10 +204,11 @@ def _assumed(cube: Cube) -> list[tuple[clingo.Symbol, bool]]:
     ]
 
 
-def solving() -> bool:
-    """Whether a solver that was told to stop still runs: clingo cannot be interrupted
-    while it grounds."""
-    return any(thread.name == SOLVER for thread in threading.enumerate())
+def _prepare() -> None:
+    """Have C++ allocate what it needs to report an error in this thread: when it is out of
+    memory it cannot, and aborts."""
+    with contextlib.suppress(RuntimeError):
+        clingo.parse_term("", logger=lambda *_: None)
 
 
 @dataclass(frozen=True)

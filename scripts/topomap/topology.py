@@ -5,6 +5,7 @@ clockwise from 0 to ``slots - 1``; opposite slots are ``slots / 2`` apart. The s
 class holds the map of a hypothesis and the map of a whole environment.
 """
 
+from collections import Counter
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any
@@ -97,8 +98,8 @@ class TopologicalMap:
         a path, and no path is circular."""
         for path in self.paths():
             places = [place for place, _ in path]
-            for place in places:
-                if places.count(place) > 1:
+            for place, times in Counter(places).items():
+                if times > 1:
                     return f"a path passes place {label(place)} twice"
             if self.links.get(path[-1]) == self.opposite(path[0]):
                 return f"the path through place {label(places[0])} is circular"

@@ -1,0 +1,166 @@
+"""encodings/input.lp: the faults of an instance as plain clingo shows them. They are those
+for which the command's reader refuses it."""
+
+import random
+import re
+from functools import cache
+
+import clingo
+import pytest
+from clingo import ast
+from conftest import ENCODINGS, ROOT, run
+from topomap.errors import InputError
+from topomap.experience import LARGEST, parse
+from worlds import random_experience
+
+PROGRAM = (ENCODINGS / "input.lp").read_text()
+CASES = {
+    "slots(4). view(0,0).": "",
+    "slots(4). view(0,0). view(0,3). turn(1,3). view(1,0). landmark(1,a).": "",
+    "": "-1,no_slots 0,no_view",
+    "slots(4;6). view(0,0).": "-1,two_slots",
+    "slots(a). view(0,0).": "-1,no_number(a)",
+    "slots(5). view(0,0).": "-1,odd_slots(5)",
+    "slots(0). view(0,0).": "-1,few_slots(0) 0,slot(0)",
+    "slots(1000002). view(0,0).": "-1,many_slots(1000002)",
+    "slots(4). view(0,0). view(-1,0).": "-1,no_step(-1)",
+    "slots(4). view(0,0). landmark(#inf,a).": "-1,no_step(#inf)",
+    "slots(4). view(0,0). turn(a,0).": "-1,no_step(a)",
+    "slots(4). view(0,0). turn(2,0). turn(4,0). view(2,0). view(4,0).": "1,no_turn 3,no_turn",
+    "slots(4). view(0,0). view(1,0).": "1,no_step",
+    "slots(4). view(0,0). turn(0,0).": "0,turn_at_start",
+    "slots(4). view(0,0). view(0,1). turn(1,0). turn(1,1). view(1,0).": "1,two_turns",
+    "slots(4). view(0,0). turn(1,0).": "1,no_view",
+    "slots(4). turn(1,0). view(1,0).": "0,no_view",
+    "slots(4). view(0,1).": "0,no_slot_0",
+    "slots(4). view(0,0). view(0,4). view(0,-1).": "0,slot(4) 0,slot(-1)",
+    "slots(4). view(0,0). turn(1,4). view(1,0).": "1,slot(4) 1,no_gateway(4)",
+    "view(0,0). view(0,a).": "-1,no_slots 0,slot(a)",
+    "slots(4). view(0,0). turn(1,3). view(1,0).": "1,no_gateway(3)",
+    "slots(2000000000). turn(2147483647,0).": (
+        "-1,many_slots(2000000000) 0,no_view 1,no_turn 2147483647,no_view"
+    ),
+}
+KINDS = {  # what topomap.experience says, and the error that says the same
+    r"no facts.*": "-1,no_slots",
+    r"\d+ facts slots.*": "-1,two_slots",
+    r"slots\((?P<K>-?\d+)\): K must.*": r"-1,(odd|few|many)_slots\({K}\)",
+    r"step (?P<T>-\d+): steps are numbered from 0": r"-1,no_step\({T}\)",
+    r"step (?P<T>\d+): it has no turn .*": "{T},no_step",
+    r"step (?P<T>\d+): no turn, .*": "{T},no_turn",
+    r"step 0: a turn; .*": "0,turn_at_start",
+    r"step (?P<T>\d+): more than one turn": "{T},two_turns",
+    r"step (?P<T>\d+): no view": "{T},no_view",
+    r"step (?P<T>\d+): slot (?P<S>-?\d+) is not in .*": r"{T},slot\({S}\)",
+    r"step (?P<T>\d+): the view lacks slot 0.*": "{T},no_slot_0",
+    r"step (?P<T>\d+): turn (?P<S>\d+): no gateway.*": r"{T},no_gateway\({S}\)",
+    r".* a step or a slot is a whole number": r"-?\d+,(no_number|no_step|slot)\(.*\)",
+}
+
+
+def errors(facts, program=PROGRAM):
+    """What stock clingo shows of the facts: exactly one answer set, and no message."""
+    messages = []
+    control = clingo.Control(["0"], logger=lambda _, text: messages.append(text))
+    control.add("base", [], program + facts)
+    control.ground([("base", [])])
+    models = []
+    control.solve(on_model=lambda model: models.append(sorted(map(str, model.symbols(shown=True)))))
+    assert (len(models), messages) == (1, [])
+    return models[0]
+
+
+@pytest.mark.parametrize("facts", CASES)
+def test_each_fault_has_its_error(facts):
+    assert errors(facts) == sorted(f"error({error})" for error in CASES[facts].split())
+
+
+@cache
+def rules():
+    found = []
+    ast.parse_string(PROGRAM, found.append)
+    return [s for s in found if s.ast_type not in (ast.ASTType.Program, ast.ASTType.Comment)]
+
+
+@pytest.mark.parametrize("number", range(len(rules())), ids=lambda n: str(rules()[n])[:40])
+def test_no_statement_can_be_removed(number):
+    """Without it a case has other errors, or clingo has something to say."""
+    rest = "\n".join(str(rule) for n, rule in enumerate(rules()) if n != number)
+    for facts, expected in CASES.items():
+        try:
+            if errors(facts, rest) != sorted(f"error({error})" for error in expected.split()):
+                return
+        except AssertionError:
+            return
+    pytest.fail("nothing changes without it")
+
+
+TERMS = ("a", '"0"', "f(0)", "(0,1)", "#inf", "#sup", '""', "-a")
+NUMBERS = (-1, 0, 1, 2, 3, 4, 5, 6, 7, 9, -4, 10**6, 10**9, LARGEST, -LARGEST)
+
+
+def corrupted(draw):
+    """The facts of a random exploration with one to three of them taken away, added or
+    changed; now and then none."""
+    facts = [
+        [name, *terms.split(",", 1)]
+        for name, terms in re.findall(
+            r"(\w+)\((.*?)\)\.", random_experience(draw, draw.choice([0, 1, 2, 5])).facts()
+        )
+    ]
+    for _ in range(draw.choice([0, 1, 1, 1, 2, 3])):
+        terms = [str(draw.choice(NUMBERS)) if draw.random() < 0.8 else draw.choice(TERMS)]
+        terms.append(str(draw.choice(NUMBERS)) if draw.random() < 0.8 else draw.choice(TERMS))
+        name = draw.choice(["slots", "view", "turn", "landmark"])
+        edit = draw.choice(["drop", "add", "change", "change", "shift"]) if facts else "add"
+        if edit == "add":
+            facts.append([name, *terms[: 1 + (name != "slots")]])
+        elif edit == "drop":
+            del facts[draw.randrange(len(facts))]
+        elif edit == "change":
+            draw.choice(facts)[-1] = terms[0]
+        else:
+            fact = draw.choice(facts)
+            if fact[1].isdigit():
+                fact[1] = str(min(int(fact[1]) + draw.choice([-1, 1]), LARGEST))
+    draw.shuffle(facts)
+    return " ".join(f"{name}({','.join(terms)})." for name, *terms in facts)
+
+
+def agree(facts):
+    """Whether there is an error; and that the reader refuses then, and only then, and
+    for a fault that is among the errors."""
+    shown, message = errors(facts), None
+    try:
+        parse(facts, "made")
+    except InputError as error:
+        message = re.sub(r"^made(:\d+)?: ", "", str(error))
+    assert bool(shown) == bool(message), f"{facts}\nread: {message}\nshown: {shown}"
+    if message:
+        matches = [(re.fullmatch(said, message), meant) for said, meant in KINDS.items()]
+        (wanted,) = (meant.format(**match.groupdict()) for match, meant in matches if match)
+        assert any(re.fullmatch(rf"error\({wanted}\)", error) for error in shown), (
+            f"{facts}\nread: {message}\nshown: {shown}"
+        )
+    return bool(shown)
+
+
+@pytest.mark.parametrize(
+    "seeds", [range(1500), pytest.param(range(1500, 30000), marks=pytest.mark.long)]
+)
+def test_the_reader_refuses_exactly_what_shows_an_error(seeds):
+    bad = [agree(corrupted(random.Random(f"input {seed}"))) for seed in seeds]
+    assert len(seeds) // 2 < sum(bad) < len(seeds)
+
+
+def test_it_grounds_over_what_occurs(tmp_path):
+    file = tmp_path / "large.lp"
+    file.write_text("slots(1000000000). view(0,0). turn(1000000000,0). view(1000000000,0).")
+    done = run("clingo", ENCODINGS / "input.lp", file, "--stats")
+    assert int(re.search(r"^Rules +: (\d+)", done.stdout, re.M)[1]) < 40
+    assert "Models       : 1\n" in done.stdout
+
+
+def test_the_instances_are_good():
+    for file in (ROOT / "instances").glob("*.lp"):
+        assert errors(file.read_text()) == []
