@@ -2,6 +2,8 @@
 # make test       run the tests; make test-long also those that take minutes
 # make lint       check style and types
 # make instances  make the batch that instances/batch.txt lists (try make -j2 instances)
+# make bench      time clingo against the search, and the memory of a million maps
+# make beyond     count what is beyond the paper's table, docs/beyond.json (an hour)
 # make clean      remove what make made
 # make committed  make the committed instances again (MAPS: folder of the real maps)
 
@@ -13,7 +15,7 @@ BATCH   := build/instances
 MAKERS  := $(addprefix scripts/topomap/,environment.py experience.py generate.py network.py \
              route.py topology.py)
 
-.PHONY: all table instances batch test test-long lint clean committed
+.PHONY: all table instances batch test test-long lint bench beyond clean committed
 .DELETE_ON_ERROR:
 
 all: instances table
@@ -51,6 +53,12 @@ lint: $(SETUP)
 
 GENERATE  := $(BIN)/topomap generate
 MANHATTAN := network $(MAPS)/manhattan.graphml --slots 4 --north 29 --route tour
+
+bench: $(SETUP)
+	$(BIN)/python tests/bench.py
+
+beyond: $(SETUP)
+	$(BIN)/topomap table --beyond --resume --output docs/beyond.json
 
 committed: $(SETUP)
 	$(GENERATE) grid 3 3 --route snake -o instances/

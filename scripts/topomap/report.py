@@ -31,9 +31,10 @@ def map_json(experience: Experience, found: Found) -> dict[str, Any]:
 def map_line(experience: Experience, found: Found) -> str:
     """A hypothesis in one line: its size, and the dstate after each step."""
     world = experience.map_of(found.at)
+    pending = sum(map(len, world.stars.values())) - len(world.links)
     return (
-        f"places {len(world.stars)}, links {len(world.edges())}, paths {len(world.paths())}, "
-        f"genus {world.genus()}, pending {len(world.pending())}: "
+        f"places {len(world.stars)}, links {len(world.links) // 2}, paths {len(world.paths())}, "
+        f"genus {world.genus()}, pending {pending}: "
         + " ".join(f"{place}.{slot}" for place, slot in found.at)
     )
 
