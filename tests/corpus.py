@@ -119,6 +119,8 @@ def theory() -> Iterator[Query]:
         yield query(("boundary", "minimal"), truth.best(closed=False), "--opt-mode=optN")
         flattest = truth.least(lambda h: h.genus(), final)
         yield query(("genus",), flattest, "--opt-mode=optN")
+        both = truth.least(lambda h: (h.genus(), *h.cost()), final)
+        yield query(("genus", "minimal"), both, "--opt-mode=optN")
 
 
 SUITES = (theory,)
