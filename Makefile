@@ -1,11 +1,13 @@
 # make            set up, make the instances, print the paper's table beside ours
 # make test       run the tests; make test-long also those that take minutes
+# make mutate     change each rule in turn, and write docs/mutation.md (JOBS: processes)
 # make lint       check style and types
 # make instances  make the batch that instances/batch.txt lists (try make -j2 instances)
 # make clean      remove what make made
 # make committed  make the committed instances again (MAPS: folder of the real maps)
 
 PYTHON  ?= python3
+JOBS    ?= $(shell nproc)
 MAPS    ?= ../shared/maps
 BIN     := .venv/bin
 SETUP   := .venv/set-up
@@ -13,7 +15,7 @@ BATCH   := build/instances
 MAKERS  := $(addprefix scripts/topomap/,environment.py experience.py generate.py network.py \
              route.py topology.py)
 
-.PHONY: all table instances batch test test-long lint clean committed
+.PHONY: all table instances batch test test-long mutate lint clean committed
 .DELETE_ON_ERROR:
 
 all: instances table
@@ -43,6 +45,9 @@ test: $(SETUP)
 
 test-long: $(SETUP)
 	$(BIN)/pytest
+
+mutate: $(SETUP)
+	$(BIN)/python tests/mutate.py --jobs $(JOBS)
 
 lint: $(SETUP)
 	$(BIN)/ruff check scripts tests

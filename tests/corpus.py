@@ -7,7 +7,7 @@ A suite is a function that yields queries; an encoding is tried with those that 
 import random
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from functools import cache, partial
+from functools import cache
 
 from conftest import PARTS, THEORY, Truth
 from topomap.experience import Experience
@@ -83,44 +83,67 @@ EXPERIENCES = {
 }
 
 
+# The random ones: seed, most steps, and how many of them are after the horizon. The last two
+# were found by a search for experiences that kill a mutant which the others do not.
+DRAWN = [*((seed, 8, seed % 3) for seed in range(100)), (602, 14, 0), (2408, 12, 0)]
+
+
 @dataclass(frozen=True)
 class Query:
     """Encodings, by their names under encodings/, loaded with facts and arguments of
-    clingo; and the answers, each the set of the atoms that it shows."""
+    clingo; and the answers, each the set of the atoms that it shows. Of a query with a
+    cost, these are the optimal ones."""
 
     files: tuple[str, ...]
     facts: str
     answers: frozenset[frozenset[str]]
     arguments: tuple[str, ...] = ()
-
-
-def hypotheses(facts, parts, expected, *arguments) -> Query:
-    """A query for the hypotheses that are expected of the theory with some parts."""
-    files = ("topomap", *(f"theory/{name}" for name in THEORY), *parts)
-    atoms = ((f"at({t},{p},{s})" for t, (p, s) in enumerate(at)) for at in expected)
-    return Query(files, facts, frozenset(map(frozenset, atoms)), arguments)
+    cost: tuple[int, ...] = ()
 
 
 def theory() -> Iterator[Query]:
     """Experiences, with the answers that the independent search gives."""
-    drawn = [random_experience(random.Random(f"corpus {n}"), 8) for n in range(100)]
-    for experience in [*EXPERIENCES.values(), *drawn]:
-        truth = Truth(experience)
+    for experience in EXPERIENCES.values():
+        yield from hypotheses(experience.facts(), (), Truth(experience))
+    for seed, most, after in DRAWN:
+        experience = random_experience(random.Random(f"corpus {seed}"), most)
+        horizon = max(0, experience.steps - after)
+        cut = ("-c", f"horizon={horizon}")
+        yield from hypotheses(experience.facts(), cut, Truth(experience.cut(horizon)))
 
-        query = partial(hypotheses, experience.facts())
-        final, half = truth.final, experience.steps // 2
-        yield query((), final)
-        for part in PARTS:
-            yield query((part,), truth.having(part))
-        yield query((), truth.levels[half], "-c", f"horizon={half}")
-        yield query(("bound",), truth.having(bound=3), "-c", "places=3")
-        fewest = truth.least(lambda h: h.cost(), final)
-        yield query(("minimal",), fewest, "--opt-mode=optN")
-        yield query(("boundary", "minimal"), truth.best(closed=False), "--opt-mode=optN")
-        flattest = truth.least(lambda h: h.genus(), final)
-        yield query(("genus",), flattest, "--opt-mode=optN")
-        both = truth.least(lambda h: (h.genus(), *h.cost()), final)
-        yield query(("genus", "minimal"), both, "--opt-mode=optN")
+
+def hypotheses(facts: str, arguments: tuple[str, ...], truth: Truth) -> Iterator[Query]:
+    """What is asked of one experience: all hypotheses, those of each part, and the best."""
+
+    def query(parts, found, *more, added="", atoms=None, cost=()):
+        files = ("topomap", *(f"theory/{name}" for name in THEORY), *parts)
+        answers = [
+            frozenset(f"at({t},{p},{s})" for t, (p, s) in enumerate(at))
+            | (atoms(truth.final[at]) if atoms else frozenset())
+            for at in found
+        ]
+        return Query(files, facts + added, frozenset(answers), (*arguments, *more), cost)
+
+    def least(parts, key, found):
+        costs = {key(truth.final[at]) for at in found}
+        best = truth.least(key, found)
+        return query(parts, best, "--opt-mode=optN", cost=min(costs, default=()))
+
+    yield query((), truth.final)
+    for part in PARTS:
+        yield query((part,), truth.having(part))
+    yield query(("bound",), truth.having(bound=3), "-c", "places=3")
+    yield query(
+        ("genus",),
+        truth.final,
+        "--opt-mode=ignore",
+        added="#show euler/1. #show genus/1.",
+        atoms=lambda h: {f"euler({h.euler()})", f"genus({h.genus()})"},
+    )
+    yield least(("minimal",), lambda h: h.cost(), truth.final)
+    yield least(("boundary", "minimal"), lambda h: h.cost(), truth.having("boundary"))
+    yield least(("genus",), lambda h: (h.genus(),), truth.final)
+    yield least(("genus", "minimal"), lambda h: (h.genus(), *h.cost()), truth.final)
 
 
 SUITES = (theory,)

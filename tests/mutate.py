@@ -32,15 +32,30 @@ LISTED = ROOT / "tests/equivalent.toml"
 REPORT = ROOT / "docs/mutation.md"
 KINDS = ("remove", "drop", "negate", "shift")
 FATES = ("survived", "killed", "refused", "endless")
-SECONDS = 10  # of the processor, for one query: the encodings take milliseconds
+SECONDS = 5  # of the processor, for one query: the encodings take milliseconds
 BYTES = 2 << 30
-HEAD = """HEAD"""
+HEAD = """# Rule mutation
+
+Written by `make mutate`, with clingo {clingo} and Python {python}.
+
+A mutant is an encoding changed in one place: a statement removed; a literal of a body or of a
+condition dropped; one negated, or a comparison turned into its complement; a number made one
+greater or one less. Mutants that read the same are one. Each is asked the queries of
+`tests/corpus.py` that load it, whose answers are known without the encodings. It is *killed*
+when one gives other answers (other models, shown atoms or costs, or a model twice), *refused*
+when clingo has an error or a message for it, *endless* when a query takes more than {seconds}
+seconds of the processor or {memory} MiB of memory, and has *survived* when all answers are
+right. Comments and `#include` are not mutated.
+"""
 COMPLEMENT = {
     ast.ComparisonOperator.Equal: ast.ComparisonOperator.NotEqual,
     ast.ComparisonOperator.LessThan: ast.ComparisonOperator.GreaterEqual,
     ast.ComparisonOperator.GreaterThan: ast.ComparisonOperator.LessEqual,
 }
 COMPLEMENT |= {other: one for one, other in COMPLEMENT.items()}
+
+
+Key = tuple[str, str, str]  # the file, the rule and the change of a mutant
 
 
 @dataclass(frozen=True)
@@ -55,7 +70,7 @@ class Mutant:
     text: str
 
     @property
-    def key(self) -> tuple[str, str, str]:
+    def key(self) -> Key:
         return self.file, self.rule, self.change
 
     def __str__(self) -> str:
@@ -117,7 +132,7 @@ def named(key: str, old: ast.AST, new: ast.AST) -> str:
     if key in ("weight", "priority"):
         return f"{key} {old} -> {new}"
     if old.ast_type == ast.ASTType.Literal or key in ("head", "left_guard", "right_guard"):
-        return f"{old} -> {new}".strip()
+        return f"{str(old).strip()} -> {str(new).strip()}"
     return ""
 
 
@@ -145,16 +160,17 @@ def tried(program: dict[str, str], query: Query) -> str:
         return "refused"
     if messages:
         return "refused"
+    wanted = {(query.cost, answer) for answer in query.answers}
     found = []
 
     def read(model: clingo.Model) -> bool:
-        if model.cost and not model.optimality_proven:
+        if query.cost and not model.optimality_proven:
             return True
-        found.append(frozenset(map(str, model.symbols(shown=True))))
-        return found[-1] in query.answers and len(found) <= len(query.answers)
+        found.append((tuple(model.cost), frozenset(map(str, model.symbols(shown=True)))))
+        return found[-1] in wanted and len(found) <= len(wanted)
 
     control.solve(on_model=read)
-    right = len(found) == len(query.answers) and set(found) == query.answers
+    right = len(found) == len(wanted) and set(found) == wanted
     return "survived" if right else "killed"
 
 
@@ -207,7 +223,7 @@ def fates(
             os.waitpid(child, 0)
 
 
-def listed(path: Path) -> dict[tuple[str, str, str], str]:
+def listed(path: Path) -> dict[Key, str]:
     """The mutants that a file lists as equivalent, each with the reason."""
     try:
         found = {}
@@ -219,7 +235,7 @@ def listed(path: Path) -> dict[tuple[str, str, str], str]:
     return found
 
 
-def report(fate: dict[Mutant, str], reasons: dict[tuple[str, str, str], str]) -> str:
+def report(fate: dict[Mutant, str], reasons: dict[Key, str]) -> str:
     """The text of docs/mutation.md."""
 
     def row(name: str, group: list[Mutant]) -> str:
@@ -228,16 +244,20 @@ def report(fate: dict[Mutant, str], reasons: dict[tuple[str, str, str], str]) ->
         numbers = [*(kinds[kind] for kind in KINDS), len(group), *(ends[end] for end in FATES)]
         return f"| {name} | {' | '.join(map(str, numbers))} |"
 
-    everyone = sorted(fate, key=lambda mutant: (mutant.file, mutant.number))
-    rows = [row(f"`{file}.lp`", list(group)) for file, group in groupby(everyone, lambda m: m.file)]
+    rows = [row(f"`{file}.lp`", list(group)) for file, group in groupby(fate, lambda m: m.file)]
     lines = [
-        HEAD.format(clingo=clingo.__version__, python=platform.python_version()),
+        HEAD.format(
+            clingo=clingo.__version__,
+            python=platform.python_version(),
+            seconds=SECONDS,
+            memory=BYTES >> 20,
+        ),
         f"| encoding | {' | '.join((*KINDS, 'all', *FATES))} |",
         "|---|" + "--:|" * (len(KINDS) + 1 + len(FATES)),
-        *(*rows, row("all", everyone)),
+        *(*rows, row("all", list(fate))),
         "\n## Survivors\n",
     ]
-    survivors = [mutant for mutant in everyone if fate[mutant] == "survived"]
+    survivors = [mutant for mutant in fate if fate[mutant] == "survived"]
     for (file, rule), group in groupby(survivors, lambda mutant: (mutant.file, mutant.rule)):
         lines.append(f"`{file}.lp`: `{rule}`\n")
         for reason, same in groupby(group, lambda m: reasons.get(m.key, "**Not listed.**")):
@@ -247,14 +267,33 @@ def report(fate: dict[Mutant, str], reasons: dict[tuple[str, str, str], str]) ->
     return "\n".join(lines).rstrip() + "\n"
 
 
+def count(text: str) -> int:
+    """A number from 1, of the command line."""
+    if not text.isdecimal() or int(text) < 1:
+        raise argparse.ArgumentTypeError(f"{text!r} is not a number from 1")
+    return int(text)
+
+
+def faults(fate: dict[Mutant, str], reasons: dict[Key, str], known: set[Key]) -> Iterator[str]:
+    """What is wrong with the fates, or with the list of the equivalent mutants."""
+    for mutant, end in fate.items():
+        if end == "survived" and mutant.key not in reasons:
+            yield f"survives, not listed: {mutant}"
+        if end != "survived" and mutant.key in reasons:
+            yield f"listed, but {end}: {mutant}"
+    for key in reasons:
+        if key not in known:
+            yield f"listed, but no mutant: {' | '.join(key)}"
+
+
 def main(
     argv: list[str] | None = None,
     folder: Path = ENCODINGS,
     asked: Callable[[], list[Query]] = queries,
 ) -> int:
     parser = argparse.ArgumentParser(description="Try the mutants of the encodings.")
-    parser.add_argument("-j", "--jobs", type=int, default=1, help="processes")
-    parser.add_argument("--sample", type=int, help="try only so many, none listed; no report")
+    parser.add_argument("-j", "--jobs", type=count, default=1, help="processes")
+    parser.add_argument("--sample", type=count, help="try only so many, none listed; no report")
     parser.add_argument("--seed", default="0", help="of the sample")
     parser.add_argument("--listed", type=Path, default=LISTED, help="the equivalent mutants")
     parser.add_argument("--report", type=Path, default=REPORT, help="the file to write")
@@ -267,12 +306,14 @@ def main(
         if untried := set(names).difference(*(query.files for query in asked())):
             raise InputError(f"{', '.join(sorted(untried))}: no query in tests/corpus.py loads it")
         reasons = listed(options.listed)
-        everyone = [mutant for file in options.files or names for mutant in mutants(folder, file)]
-        chosen = everyone
-        if options.sample is not None:
-            chosen = [mutant for mutant in everyone if mutant.key not in reasons]
+        everyone = [mutant for file in names for mutant in mutants(folder, file)]
+        chosen = [mutant for mutant in everyone if mutant.file in (options.files or names)]
+        if options.sample:
+            chosen = [mutant for mutant in chosen if mutant.key not in reasons]
             chosen = random.Random(options.seed).sample(chosen, min(options.sample, len(chosen)))
-        fate = dict(tqdm(fates(folder, chosen, asked(), options.jobs), "mutants", len(chosen)))
+        trials = fates(folder, chosen, asked(), options.jobs)
+        ends = dict(tqdm(trials, "mutants", len(chosen), disable=None))
+        fate = {mutant: ends[mutant] for mutant in chosen}
         if not (options.files or options.sample):
             with output(str(options.report)) as text:
                 text.write(report(fate, reasons))
@@ -281,19 +322,12 @@ def main(
         return 2
     except KeyboardInterrupt:
         return 130
-    known = {mutant.key for mutant in everyone}
-    faults = []
-    for mutant in chosen:
-        if fate[mutant] == "survived" and mutant.key not in reasons:
-            faults.append(f"survives, not listed: {mutant}")
-        if fate[mutant] != "survived" and mutant.key in reasons:
-            faults.append(f"listed, but {fate[mutant]}: {mutant}")
-    for key in reasons:
-        if key not in known and key[0] in (options.files or [key[0]]):
-            faults.append(f"listed, but no mutant: {' | '.join(key)}")
-    print(", ".join(f"{n} {end}" for end, n in Counter(fate.values()).items()))
-    print("\n".join(faults))
-    return 1 if faults else 0
+    numbers = Counter(fate.values())
+    print(f"{len(fate)} mutants:", ", ".join(f"{numbers[end]} {end}" for end in FATES))
+    wrong = list(faults(fate, reasons, {mutant.key for mutant in everyone}))
+    for fault in wrong:
+        print(fault)
+    return 1 if wrong else 0
 
 
 if __name__ == "__main__":
