@@ -1,5 +1,6 @@
 # make            set up, make the instances, print the paper's table beside ours
 # make test       run the tests; make test-long also those that take minutes
+# make mutate     change each rule in turn, and write docs/mutation.md (JOBS: processes)
 # make lint       check style and types
 # make instances  make the batch that instances/batch.txt lists (try make -j2 instances)
 # make bench      time clingo against the search, and the memory of a million maps
@@ -8,6 +9,7 @@
 # make committed  make the committed instances again (MAPS: folder of the real maps)
 
 PYTHON  ?= python3
+JOBS    ?= $(shell nproc)
 MAPS    ?= ../shared/maps
 BIN     := .venv/bin
 SETUP   := .venv/set-up
@@ -15,7 +17,7 @@ BATCH   := build/instances
 MAKERS  := $(addprefix scripts/topomap/,environment.py experience.py generate.py network.py \
              route.py topology.py)
 
-.PHONY: all table instances batch test test-long lint bench beyond clean committed
+.PHONY: all table instances batch test test-long mutate lint bench beyond clean committed
 .DELETE_ON_ERROR:
 
 all: instances table
@@ -45,6 +47,9 @@ test: $(SETUP)
 
 test-long: $(SETUP)
 	$(BIN)/pytest
+
+mutate: $(SETUP)
+	$(BIN)/python tests/mutate.py --jobs $(JOBS)
 
 lint: $(SETUP)
 	$(BIN)/ruff check scripts tests

@@ -26,19 +26,16 @@ def pytest_terminal_summary(terminalreporter):
         terminalreporter.write_line(f"tried: {number:,} {what}")
 
 
-def answers(parts, facts, *arguments, programs=None):
+def answers(parts, facts, *arguments):
     """The set of hypotheses, as tuples of (place, gateway) by step, that stock clingo
     finds; with a preference among the parts, the best ones. Fails on any message of
-    clingo and on an answer given twice. ``programs`` replaces the files."""
+    clingo and on an answer given twice."""
     messages = []
     optimize = {"minimal", "genus"} & set(parts)
     options = ["0", *arguments] + (["--opt-mode=optN"] if optimize else [])
     control = clingo.Control(options, logger=lambda _, text: messages.append(text))
-    if programs is None:
-        for part in ("topomap", *parts):
-            control.load(str(ENCODINGS / f"{part}.lp"))
-    else:
-        control.add("base", [], "\n".join(programs))
+    for part in ("topomap", *parts):
+        control.load(str(ENCODINGS / f"{part}.lp"))
     control.add("base", [], facts)
     control.ground([("base", [])])
     found = []
@@ -47,12 +44,12 @@ def answers(parts, facts, *arguments, programs=None):
         if optimize and not model.optimality_proven:
             return
         at = sorted([a.number for a in s.arguments] for s in model.symbols(shown=True))
-        assert programs or [step for step, _, _ in at] == list(range(len(at)))
+        assert [step for step, _, _ in at] == list(range(len(at)))
         found.append(tuple((place, slot) for _, place, slot in at))
 
     control.solve(on_model=read)
-    assert programs or not messages, messages
-    assert programs or len(found) == len(set(found))
+    assert not messages, messages
+    assert len(found) == len(set(found))
     return set(found)
 
 

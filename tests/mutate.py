@@ -1,0 +1,334 @@
+"""Rule mutation: every encoding, changed in one place at a time, must give a wrong answer
+to some query of tests/corpus.py, but for the mutants that tests/equivalent.toml proves to be
+equivalent. ``make mutate`` tries them all and writes docs/mutation.md.
+
+Exit status: 0 so it is; 1 a mutant survives that is not listed, or one is listed that does
+not survive or does not exist; 2 bad input or usage; 130 interrupted.
+"""
+
+import argparse
+import os
+import platform
+import random
+import resource
+import signal
+import sys
+import tomllib
+from collections import Counter
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from itertools import groupby
+from pathlib import Path
+
+import clingo
+from clingo import ast
+from conftest import ENCODINGS, ROOT
+from corpus import Query, queries
+from topomap.errors import InputError
+from topomap.files import output
+from tqdm import tqdm
+
+LISTED = ROOT / "tests/equivalent.toml"
+REPORT = ROOT / "docs/mutation.md"
+KINDS = ("remove", "drop", "negate", "shift")
+FATES = ("survived", "killed", "refused", "endless")
+SECONDS = 5  # of the processor, for one query: the encodings take milliseconds
+BYTES = 2 << 30
+HEAD = """# Rule mutation
+
+Written by `make mutate`, with clingo {clingo} and Python {python}.
+
+A mutant is an encoding changed in one place: a statement removed; a literal of a body or of a
+condition dropped; one negated, or a comparison turned into its complement; a number made one
+greater or one less. Mutants that read the same are one. Each is asked the queries of
+`tests/corpus.py` that load it, whose answers are known without the encodings. It is *killed*
+when one gives other answers (other models, shown atoms or costs, or a model twice), *refused*
+when clingo has an error or a message for it, *endless* when a query takes more than {seconds}
+seconds of the processor or {memory} MiB of memory, and has *survived* when all answers are
+right. Comments and `#include` are not mutated.
+"""
+COMPLEMENT = {
+    ast.ComparisonOperator.Equal: ast.ComparisonOperator.NotEqual,
+    ast.ComparisonOperator.LessThan: ast.ComparisonOperator.GreaterEqual,
+    ast.ComparisonOperator.GreaterThan: ast.ComparisonOperator.LessEqual,
+}
+COMPLEMENT |= {other: one for one, other in COMPLEMENT.items()}
+
+
+Key = tuple[str, str, str]  # the file, the rule and the change of a mutant
+
+
+@dataclass(frozen=True)
+class Mutant:
+    """An encoding in which one statement reads ``text``; known by file, rule and change."""
+
+    file: str
+    rule: str
+    change: str
+    kind: str
+    number: int
+    text: str
+
+    @property
+    def key(self) -> Key:
+        return self.file, self.rule, self.change
+
+    def __str__(self) -> str:
+        return " | ".join(self.key)
+
+
+def statements(folder: Path, file: str) -> list[ast.AST]:
+    """The statements of an encoding, without its includes and comments."""
+    lines = (folder / f"{file}.lp").read_text(encoding="utf-8").splitlines()
+    text = "\n".join(line for line in lines if not line.startswith("#include"))
+    found: list[ast.AST] = []
+    ast.parse_string(text, found.append)
+    left_out = (ast.ASTType.Comment, ast.ASTType.Program)
+    return [statement for statement in found if statement.ast_type not in left_out]
+
+
+def mutants(folder: Path, file: str) -> list[Mutant]:
+    """The mutants of an encoding; of those that read the same, one."""
+    found = {}
+    for number, statement in enumerate(statements(folder, file)):
+        rule = str(statement)
+        found[number, ""] = Mutant(file, rule, "remove", "remove", number, "")
+        for kind, change, node in changes(statement):
+            text = str(node)
+            if text != rule:
+                found.setdefault((number, text), Mutant(file, rule, change, kind, number, text))
+    return list(found.values())
+
+
+def changes(node: ast.AST, body: bool = False) -> Iterator[tuple[str, str, ast.AST]]:
+    """What one change makes of a node: its kind, its text, and the changed node. ``body``
+    tells whether the node is part of a body or of a condition."""
+    if node.ast_type == ast.ASTType.Literal and body:
+        yield "negate", "", negated(node)
+    if node.ast_type == ast.ASTType.SymbolicTerm and node.symbol.type == clingo.SymbolType.Number:
+        for other in (node.symbol.number + 1, node.symbol.number - 1):
+            yield "shift", "", node.update(symbol=clingo.Number(other))
+    for key in node.child_keys:
+        child = getattr(node, key)
+        literals = key in ("body", "condition")
+        if child is None:
+            continue
+        if isinstance(child, ast.AST):
+            for kind, change, new in changes(child, body):
+                yield kind, change or named(key, child, new), node.update(**{key: new})
+            continue
+        for place, item in enumerate(child):
+            before, after = list(child[:place]), list(child[place + 1 :])
+            if literals:
+                yield "drop", f"drop {item}", node.update(**{key: before + after})
+            for kind, change, new in changes(item, body or literals):
+                change = change or named(key, item, new)
+                yield kind, change, node.update(**{key: [*before, new, *after]})
+
+
+def named(key: str, old: ast.AST, new: ast.AST) -> str:
+    """The text of a change, once it is one of a literal, a head, or a part of one that has
+    no other name; until then none."""
+    if key in ("weight", "priority"):
+        return f"{key} {old} -> {new}"
+    if old.ast_type == ast.ASTType.Literal or key in ("head", "left_guard", "right_guard"):
+        return f"{str(old).strip()} -> {str(new).strip()}"
+    return ""
+
+
+def negated(literal: ast.AST) -> ast.AST:
+    """``not a`` of ``a``, and the other way about; of a comparison its complement."""
+    atom = literal.atom
+    if atom.ast_type == ast.ASTType.Comparison and len(atom.guards) == 1:
+        guard = atom.guards[0]
+        opposite = COMPLEMENT[ast.ComparisonOperator(guard.comparison)]
+        return literal.update(atom=atom.update(guards=[guard.update(comparison=opposite)]))
+    sign = ast.Sign.Negation if literal.sign == ast.Sign.NoSign else ast.Sign.NoSign
+    return literal.update(sign=sign)
+
+
+def tried(program: dict[str, str], query: Query) -> str:
+    """The fate of a program at a query: refused if clingo has a message or an error."""
+    messages: list[str] = []
+    arguments = ["0", *query.arguments]
+    control = clingo.Control(arguments, logger=lambda _, text: messages.append(text))
+    try:
+        control.add("base", [], "\n".join(program[file] for file in query.files))
+        control.add("base", [], query.facts)
+        control.ground([("base", [])])
+    except RuntimeError:
+        return "refused"
+    if messages:
+        return "refused"
+    wanted = {(query.cost, answer) for answer in query.answers}
+    found = []
+
+    def read(model: clingo.Model) -> bool:
+        if query.cost and not model.optimality_proven:
+            return True
+        found.append((tuple(model.cost), frozenset(map(str, model.symbols(shown=True)))))
+        return found[-1] in wanted and len(found) <= len(wanted)
+
+    control.solve(on_model=read)
+    right = len(found) == len(wanted) and set(found) == wanted
+    return "survived" if right else "killed"
+
+
+def suffer(program: dict[str, str], asked: list[Query]) -> str:
+    """The fate of a program at the first query that it does not survive. A query that
+    takes too long ends the process."""
+    resource.setrlimit(resource.RLIMIT_AS, (BYTES, BYTES))
+    for query in asked:
+        signal.setitimer(signal.ITIMER_PROF, SECONDS)
+        try:
+            fate = tried(program, query)
+        except MemoryError:
+            return "endless"
+        if fate != "survived":
+            return fate
+    return "survived"
+
+
+def fates(
+    folder: Path, chosen: list[Mutant], asked: list[Query], jobs: int
+) -> Iterator[tuple[Mutant, str]]:
+    """The fate of each mutant, as they come, each in a process of its own."""
+    names = {mutant.file for mutant in chosen}.union(*(query.files for query in asked))
+    texts = {file: list(map(str, statements(folder, file))) for file in names}
+    waiting = list(reversed(chosen))
+    running: dict[int, Mutant] = {}
+    try:
+        while waiting or running:
+            while waiting and len(running) < jobs:
+                mutant = waiting.pop()
+                if child := os.fork():
+                    running[child] = mutant
+                    continue
+                code = len(FATES)
+                try:
+                    texts[mutant.file][mutant.number] = mutant.text
+                    program = {file: "\n".join(text) for file, text in texts.items()}
+                    mine = [query for query in asked if mutant.file in query.files]
+                    code = FATES.index(suffer(program, mine))
+                finally:
+                    os._exit(code)
+            child, status = os.wait()
+            mutant, code = running.pop(child), os.waitstatus_to_exitcode(status)
+            if code >= len(FATES):
+                raise RuntimeError(f"could not try {mutant}")
+            yield mutant, FATES[code] if code >= 0 else "endless"
+    finally:
+        for child in running:
+            os.kill(child, signal.SIGKILL)
+            os.waitpid(child, 0)
+
+
+def listed(path: Path) -> dict[Key, str]:
+    """The mutants that a file lists as equivalent, each with the reason."""
+    try:
+        found = {}
+        for entry in tomllib.loads(path.read_text(encoding="utf-8"))["equivalent"]:
+            for change in entry["changes"]:
+                found[entry["file"], entry["rule"], change] = entry["reason"].strip()
+    except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
+        raise InputError(f"{path}: {error!r}") from None
+    return found
+
+
+def report(fate: dict[Mutant, str], reasons: dict[Key, str]) -> str:
+    """The text of docs/mutation.md."""
+
+    def row(name: str, group: list[Mutant]) -> str:
+        kinds = Counter(mutant.kind for mutant in group)
+        ends = Counter(fate[mutant] for mutant in group)
+        numbers = [*(kinds[kind] for kind in KINDS), len(group), *(ends[end] for end in FATES)]
+        return f"| {name} | {' | '.join(map(str, numbers))} |"
+
+    rows = [row(f"`{file}.lp`", list(group)) for file, group in groupby(fate, lambda m: m.file)]
+    lines = [
+        HEAD.format(
+            clingo=clingo.__version__,
+            python=platform.python_version(),
+            seconds=SECONDS,
+            memory=BYTES >> 20,
+        ),
+        f"| encoding | {' | '.join((*KINDS, 'all', *FATES))} |",
+        "|---|" + "--:|" * (len(KINDS) + 1 + len(FATES)),
+        *(*rows, row("all", list(fate))),
+        "\n## Survivors\n",
+    ]
+    survivors = [mutant for mutant in fate if fate[mutant] == "survived"]
+    for (file, rule), group in groupby(survivors, lambda mutant: (mutant.file, mutant.rule)):
+        lines.append(f"`{file}.lp`: `{rule}`\n")
+        for reason, same in groupby(group, lambda m: reasons.get(m.key, "**Not listed.**")):
+            changed = "; ".join(f"`{mutant.change}`" for mutant in same)
+            lines.append(f"- {changed}: {reason}")
+        lines.append("")
+    return "\n".join(lines).rstrip() + "\n"
+
+
+def count(text: str) -> int:
+    """A number from 1, of the command line."""
+    if not text.isdecimal() or int(text) < 1:
+        raise argparse.ArgumentTypeError(f"{text!r} is not a number from 1")
+    return int(text)
+
+
+def faults(fate: dict[Mutant, str], reasons: dict[Key, str], known: set[Key]) -> Iterator[str]:
+    """What is wrong with the fates, or with the list of the equivalent mutants."""
+    for mutant, end in fate.items():
+        if end == "survived" and mutant.key not in reasons:
+            yield f"survives, not listed: {mutant}"
+        if end != "survived" and mutant.key in reasons:
+            yield f"listed, but {end}: {mutant}"
+    for key in reasons:
+        if key not in known:
+            yield f"listed, but no mutant: {' | '.join(key)}"
+
+
+def main(
+    argv: list[str] | None = None,
+    folder: Path = ENCODINGS,
+    asked: Callable[[], list[Query]] = queries,
+) -> int:
+    parser = argparse.ArgumentParser(description="Try the mutants of the encodings.")
+    parser.add_argument("-j", "--jobs", type=count, default=1, help="processes")
+    parser.add_argument("--sample", type=count, help="try only so many, none listed; no report")
+    parser.add_argument("--seed", default="0", help="of the sample")
+    parser.add_argument("--listed", type=Path, default=LISTED, help="the equivalent mutants")
+    parser.add_argument("--report", type=Path, default=REPORT, help="the file to write")
+    parser.add_argument("files", nargs="*", help="try only these, as theory/links; no report")
+    options = parser.parse_args(argv)
+    names = sorted(str(path.relative_to(folder))[:-3] for path in folder.rglob("*.lp"))
+    try:
+        if unknown := set(options.files) - set(names):
+            raise InputError(f"{', '.join(sorted(unknown))}: no such encoding")
+        if untried := set(names).difference(*(query.files for query in asked())):
+            raise InputError(f"{', '.join(sorted(untried))}: no query in tests/corpus.py loads it")
+        reasons = listed(options.listed)
+        everyone = [mutant for file in names for mutant in mutants(folder, file)]
+        chosen = [mutant for mutant in everyone if mutant.file in (options.files or names)]
+        if options.sample:
+            chosen = [mutant for mutant in chosen if mutant.key not in reasons]
+            chosen = random.Random(options.seed).sample(chosen, min(options.sample, len(chosen)))
+        trials = fates(folder, chosen, asked(), options.jobs)
+        ends = dict(tqdm(trials, "mutants", len(chosen), disable=None))
+        fate = {mutant: ends[mutant] for mutant in chosen}
+        if not (options.files or options.sample):
+            with output(str(options.report)) as text:
+                text.write(report(fate, reasons))
+    except InputError as error:
+        print(f"mutate: {error}", file=sys.stderr)
+        return 2
+    except KeyboardInterrupt:
+        return 130
+    numbers = Counter(fate.values())
+    print(f"{len(fate)} mutants:", ", ".join(f"{numbers[end]} {end}" for end in FATES))
+    wrong = list(faults(fate, reasons, {mutant.key for mutant in everyone}))
+    for fault in wrong:
+        print(fault)
+    return 1 if wrong else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

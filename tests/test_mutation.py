@@ -1,0 +1,169 @@
+"""Rule mutation: which mutants are made, what makes ``make mutate`` fail, and samples of it."""
+
+import mutate
+import pytest
+from conftest import ENCODINGS
+from corpus import Query, queries
+
+RULES = """
+p(X) :- q(X,1), not r(X).
+:- p(X), X > 1, not q(X,Y) : r(Y).
+{ s(X) : q(X,_) } = 2.
+#minimize { 3@1,X : s(X) }.
+"""
+MUTANTS = {
+    "p(X) :- q(X,1); not r(X).": {
+        "remove": "",
+        "drop q(X,1)": "p(X) :- not r(X).",
+        "q(X,1) -> not q(X,1)": "p(X) :- not q(X,1); not r(X).",
+        "q(X,1) -> q(X,2)": "p(X) :- q(X,2); not r(X).",
+        "q(X,1) -> q(X,0)": "p(X) :- q(X,0); not r(X).",
+        "drop not r(X)": "p(X) :- q(X,1).",
+        "not r(X) -> r(X)": "p(X) :- q(X,1); r(X).",
+    },
+    "#false :- p(X); X > 1; not q(X,Y): r(Y).": {
+        "remove": "",
+        "drop p(X)": "#false :- X > 1; not q(X,Y): r(Y).",
+        "p(X) -> not p(X)": "#false :- not p(X); X > 1; not q(X,Y): r(Y).",
+        "drop X > 1": "#false :- p(X); not q(X,Y): r(Y).",
+        "X > 1 -> X <= 1": "#false :- p(X); X <= 1; not q(X,Y): r(Y).",
+        "X > 1 -> X > 2": "#false :- p(X); X > 2; not q(X,Y): r(Y).",
+        "X > 1 -> X > 0": "#false :- p(X); X > 0; not q(X,Y): r(Y).",
+        "drop not q(X,Y): r(Y)": "#false :- p(X); X > 1.",
+        "not q(X,Y) -> q(X,Y)": "#false :- p(X); X > 1; q(X,Y): r(Y).",
+        "drop r(Y)": "#false :- p(X); X > 1; not q(X,Y).",
+        "r(Y) -> not r(Y)": "#false :- p(X); X > 1; not q(X,Y): not r(Y).",
+    },
+    "2 = { s(X): q(X,_) }.": {
+        "remove": "",
+        "= 2 -> = 3": "3 = { s(X): q(X,_) }.",
+        "= 2 -> = 1": "1 = { s(X): q(X,_) }.",
+        "drop q(X,_)": "2 = { s(X) }.",
+        "q(X,_) -> not q(X,_)": "2 = { s(X): not q(X,_) }.",
+    },
+    ":~ s(X). [3@1,X]": {
+        "remove": "",
+        "weight 3 -> 4": ":~ s(X). [4@1,X]",
+        "weight 3 -> 2": ":~ s(X). [2@1,X]",
+        "priority 1 -> 2": ":~ s(X). [3@2,X]",
+        "priority 1 -> 0": ":~ s(X). [3@0,X]",
+        "drop s(X)": ":~ . [3@1,X]",
+        "s(X) -> not s(X)": ":~ not s(X). [3@1,X]",
+    },
+}
+
+# A program with mutants that are killed, refused and endless, and an equivalent one.
+COUNTER = "% Count.\nn(0).\nn(X+1) :- n(X), X < limit.\n#show n/1.\n"
+ASKED = [
+    Query(("counter",), "", frozenset({frozenset({"n(0)", "n(1)"})}), ("-c", "limit=1")),
+]
+EQUIVALENT = ("counter", "#show n/1.", "remove")
+KILLED = ("counter", "n(0).", "n(0) -> n(1)")
+STALE = ("counter", "n(7).", "remove")
+
+
+def listing(*keys):
+    """The text that lists these mutants as equivalent."""
+    return "\n".join(
+        f"[[equivalent]]\nfile = '{file}'\nrule = '{rule}'\nchanges = ['{change}']\nreason = 'R.'\n"
+        for file, rule, change in keys
+    )
+
+
+@pytest.fixture
+def mutated(tmp_path, monkeypatch, capsys):
+    """A function that runs the command on COUNTER; its status, output, messages and report."""
+    monkeypatch.setattr(mutate, "SECONDS", 0.2)
+    report, listed, folder = (tmp_path / name for name in ("report.md", "listed.toml", "folder"))
+    folder.mkdir()
+    (folder / "counter.lp").write_text(COUNTER)
+
+    def run(text, *arguments):
+        listed.write_text(text)
+        files = ["--listed", str(listed), "--report", str(report)]
+        status = mutate.main([*files, *arguments], folder, lambda: ASKED)
+        written = report.read_text() if report.exists() else None
+        return status, *capsys.readouterr(), written
+
+    return run
+
+
+def test_these_mutants_are_made(tmp_path):
+    (tmp_path / "rules.lp").write_text("% A comment.\n" + RULES)
+    made = {rule: {} for rule in MUTANTS}
+    for mutant in mutate.mutants(tmp_path, "rules"):
+        made[mutant.rule][mutant.change] = mutant.text
+    assert made == MUTANTS
+
+
+def test_all_is_well_if_only_listed_mutants_survive(mutated):
+    status, out, _, report = mutated(listing(EQUIVALENT))
+    assert status == 0
+    assert out == "11 mutants: 1 survived, 7 killed, 2 refused, 1 endless\n"
+    assert "| `counter.lp` | 3 | 2 | 2 | 4 | 11 | 1 | 7 | 2 | 1 |" in report.splitlines()
+    assert "- `remove`: R." in report.splitlines()
+    assert mutated(listing(EQUIVALENT), "-j", "3")[3] == report
+
+
+def test_a_survivor_that_is_not_listed_is_a_fault(mutated):
+    status, out, _, report = mutated("equivalent = []")
+    assert status == 1
+    assert out.splitlines()[1:] == ["survives, not listed: counter | #show n/1. | remove"]
+    assert "- `remove`: **Not listed.**" in report.splitlines()
+
+
+def test_a_listed_mutant_that_is_killed_or_is_none_is_a_fault(mutated):
+    status, out, *_ = mutated(listing(EQUIVALENT, KILLED, STALE))
+    assert status == 1
+    assert out.splitlines()[1:] == [
+        "listed, but killed: counter | n(0). | n(0) -> n(1)",
+        "listed, but no mutant: counter | n(7). | remove",
+    ]
+
+
+def test_a_sample_is_of_mutants_that_are_not_listed_and_writes_nothing(mutated):
+    status, out, _, report = mutated(listing(EQUIVALENT), "--sample", "99")
+    assert (status, report) == (0, None)
+    assert out.startswith("10 mutants: 0 survived,")
+
+
+@pytest.mark.parametrize(
+    ("text", "arguments", "message"),
+    [
+        ("equivalent = ", (), "listed.toml"),
+        ("[[equivalent]]\nfile = 'counter'", (), "listed.toml"),
+        ("equivalent = []", ("links",), "links: no such encoding"),
+    ],
+)
+def test_bad_input_is_refused_in_one_line(mutated, text, arguments, message):
+    status, out, err, report = mutated(text, *arguments)
+    assert (status, out, report) == (2, "", None)
+    assert err.startswith("mutate: ")
+    assert message in err
+    assert err.count("\n") == 1
+
+
+def test_an_encoding_that_no_query_loads_is_refused(mutated, tmp_path):
+    (tmp_path / "folder/other.lp").write_text("a.\n")
+    assert mutated(listing(EQUIVALENT))[2].startswith("mutate: other: no query")
+
+
+def test_no_statement_can_be_removed():
+    """Each, but for the listed ones, is missed by some query."""
+    files = sorted(str(path.relative_to(ENCODINGS))[:-3] for path in ENCODINGS.rglob("*.lp"))
+    reasons = mutate.listed(mutate.LISTED)
+    chosen = [
+        mutant
+        for file in files
+        for mutant in mutate.mutants(ENCODINGS, file)
+        if mutant.kind == "remove" and mutant.key not in reasons
+    ]
+    assert len(chosen) > 60
+    for mutant, fate in mutate.fates(ENCODINGS, chosen, queries(), 1):
+        assert fate in ("killed", "refused"), mutant
+
+
+@pytest.mark.parametrize("number", [40, pytest.param(300, marks=pytest.mark.long)])
+def test_a_sample_is_killed(number, capsys):
+    status = mutate.main(["--sample", str(number), "--seed", "sample"])
+    assert status == 0, capsys.readouterr().out
