@@ -188,9 +188,9 @@ def table(args: argparse.Namespace) -> int:
             for row in figure4.rows(args.jobs):
                 rows = sorted([*rows, row], key=lambda row: (row["environment"], row["planarity"]))
                 say(f"counted {len(rows)} of {len(figure4.COLUMNS)} columns")
-        except Stopped:
+        except Stopped as stopped:  # the file keeps an older, complete table
             _show_table(args, rows, complete=False)
-            raise KeyboardInterrupt from None  # the file keeps an older, complete table
+            raise (KeyboardInterrupt if str(stopped) == INTERRUPT else MemoryError) from None
         json.dump({"complete": True, "rows": rows}, file, indent=1)
         file.write("\n")
     _show_table(args, rows, complete=True)
