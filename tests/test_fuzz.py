@@ -25,14 +25,14 @@ from worlds import random_experience
 SECONDS = 10
 OLD = "old\n"
 TOKENS = [
-    *("#script (python) print(1) #end.", '#include "/etc/passwd".', "#const a=1.", "#inf", "#sup"),
-    *("\0", "\ufeff", "\u0663", "\u0441", "\uff10", "\u2028", "\r", "\n", "\t", " ", "", "\\", "'"),
-    *("99999999999", "2147483648", "1000000000", "-1", "0x0", "1e999", "NaN", "inf", "0", "7", "1.5"),
+    *("#script (python) print(1) #end.", '#include "/etc/passwd".', "#const a=1.", "#inf"),
+    *("\0", "\ufeff", "\u0663", "\u0441", "\uff10", "\u2028", "\r", "\n", "\t", " ", "", "\\"),
+    *("99999999999", "2147483648", "1000000000", "-1", "0x0", "1e999", "NaN", "inf", "0", "1.5"),
     *("slots(1000000000).", "turn(1000000000,0).", "view(0,0).", "view(X,0).", "a:-b.", "-a"),
     *("f(" * 200, "(" * 5000, "[" * 5000, "<a>" * 5000, "-" * 500, "|", "..", ";", ",", ".", ":"),
     *("%*", "*%", "%", '"', "{", "}", "{1..9}", "{0..999999999}", "{a,b}" * 30, "null", "true"),
     *("<!DOCTYPE a>", '<!ENTITY a "b">', "&lt;", "&a;", "]]>", "<", ">", "</node>", "<data/>"),
-    *("--help", "-o", "--json", "--route", "snake", "walk", "tour", "--seed", "--name", "../x", "/"),
+    *("--help", "-o", "--json", "--route", "snake", "walk", "tour", "--seed", "--name", "../x"),
 ]  # fmt: skip
 
 

@@ -219,7 +219,8 @@ def family(args: argparse.Namespace) -> int:
     calls: dict[str, list[str]] = {}
     for line, call in expand(args.file):
         try:
-            parsed = args.parse(["generate", *call])
+            with contextlib.redirect_stdout(None):
+                parsed = args.parse(["generate", *call])
             if parsed.output or parsed.truth or parsed.json:
                 raise InputError("-o, --truth and --json have no place in a family")
             made = _instance(parsed)
