@@ -1,12 +1,15 @@
 """Hostile input, by name: each is refused in one clear line, soon, and in little memory. And
 outputs that cannot be written."""
 
+import json
 import os
 import resource
 import shutil
 import subprocess
 import sys
+import tempfile
 import time
+from pathlib import Path
 
 import pytest
 from conftest import BIN, ROOT
@@ -59,28 +62,53 @@ NETWORKS = {
 }
 
 
+WORKER = """
+import contextlib, io, json, os, sys
+from topomap.cli import main
+for line in sys.stdin:
+    folder, call = json.loads(line)
+    os.chdir(folder)
+    out, err = io.StringIO(), io.StringIO()
+    with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
+        status = main(call)
+    print(json.dumps([status, out.getvalue(), err.getvalue()]), flush=True)
+"""
+workers = []
+
+
 def limited():
-    """The limits within which hostile input is to be refused: 2 GiB."""
+    """The memory within which hostile input is to be refused: 2 GiB."""
     resource.setrlimit(resource.RLIMIT_AS, (2 * 2**30,) * 2)
 
 
-def refusal(folder, *arguments, **options):
-    """The one line in which a command refuses, with status 2, and soon."""
+def refusal(folder, *arguments):
+    """The one line in which a command refuses, with status 2, and soon. One process takes
+    the calls in turn; a new one, after one that it did not survive."""
+    if not workers or workers[-1].poll() is not None:
+        pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "text": True}
+        workers.append(
+            subprocess.Popen([sys.executable, "-c", WORKER], preexec_fn=limited, **pipes)
+        )
     begun = time.monotonic()
-    done = subprocess.run(
-        [BIN / "topomap", *map(str, arguments)],
-        capture_output=True,
-        text=True,
-        cwd=folder,
-        preexec_fn=limited,
-        **options,
-    )
-    assert (done.returncode, done.stdout) == (2, ""), done.stderr[-500:]
-    assert done.stderr.count("\n") == 1
-    assert len(done.stderr) < 1000
+    workers[-1].stdin.write(json.dumps([str(folder), [str(word) for word in arguments]]) + "\n")
+    workers[-1].stdin.flush()
+    answer = workers[-1].stdout.readline()
+    assert answer, f"it died: status {workers[-1].wait()}"
+    status, out, err = json.loads(answer)
+    assert (status, out) == (2, ""), err[-500:]
+    assert err.count("\n") == 1
+    assert len(err) < 1000
     assert time.monotonic() - begun < 10
     assert not (folder / "made").exists()
-    return done.stderr
+    return err
+
+
+@pytest.fixture(scope="module", autouse=True)
+def workers_end():
+    yield
+    for worker in workers:
+        worker.stdin.close()
+        assert worker.wait() == 0
 
 
 @pytest.mark.parametrize("name", INSTANCES)
@@ -93,13 +121,13 @@ def test_hostile_instances(tmp_path, name):
     assert fault in line
 
 
-@pytest.mark.parametrize("piece", ["a", "view(0,0). ", "% ", '"', "-"])
+@pytest.mark.parametrize("piece", ["view(0,0). ", '"'])
 @pytest.mark.parametrize("command", [["solve"], ["generate", "network"], ["family", "-d", "made"]])
 def test_a_line_of_100_megabytes(tmp_path, piece, command):
     file = tmp_path / "long"
     with file.open("w") as out:
         for _ in range(100):
-            out.write(piece * (10**6 // len(piece)))
+            out.write(piece * (10**6 // len(piece) + 1))
     route = ["--route", "tour"] if "network" in command else []
     assert refusal(tmp_path, *command, file, *route) == f"{file}: larger than 32 MiB\n"
 
@@ -109,7 +137,7 @@ def test_devices_as_input(tmp_path, file):
     assert refusal(tmp_path, "solve", file).startswith(f"{file}: ")
 
 
-@pytest.mark.parametrize("encoding", ["utf-8", "utf-16", "utf-16-le", "utf-16-be", "utf-8-sig"])
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16", "utf-16-le", "utf-16-be"])
 @pytest.mark.parametrize("name", NETWORKS)
 def test_hostile_networks(tmp_path, name, encoding):
     file = tmp_path / "bad.graphml"
@@ -328,29 +356,26 @@ def test_no_room_left(tmp_path):
         subprocess.run(["umount", folder], check=True)
 
 
-def test_a_folder_that_cannot_be_written(tmp_path):
+def test_a_folder_that_cannot_be_written():
     """As another user where the tests run as root, which may write everywhere."""
-    folder = tmp_path / "locked"
-    folder.mkdir()
-    (folder / "maps.json").write_text("old")
-    (folder / "maps.json").chmod(0o644)
-    folder.chmod(0o555)
-    call = [sys.executable, "-m", "topomap", "solve", GRID, "--closed", "-o", folder / "maps.json"]
-    options = {}
-    if os.geteuid() == 0:
-        options = {"user": 65534, "group": 65534}
-        for parent in tmp_path.parents:
-            if parent.stat().st_uid == 0 and parent.name.startswith("pytest-"):
-                parent.chmod(0o755)
-        tmp_path.chmod(0o755)
-        try:
-            subprocess.run([sys.executable, "-c", "import topomap.cli"], check=True, **options)
-        except (OSError, subprocess.CalledProcessError):
-            pytest.skip("another user cannot run this Python")
-    done = subprocess.run(call, capture_output=True, text=True, **options)
-    folder.chmod(0o755)
-    assert (done.returncode, done.stderr) == (2, f"{folder}/maps.json: permission denied\n")
-    assert [path.read_text() for path in folder.iterdir()] == ["old"]
+    program = """
+import os, sys
+from topomap.cli import main
+if os.geteuid() == 0:
+    os.setgid(65534)
+    os.setuid(65534)
+sys.exit(main(sys.argv[1:]))
+"""
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        file = folder / "grid.lp"
+        file.write_text("old")
+        folder.chmod(0o555)
+        call = [sys.executable, "-c", program, *COMMANDS[3], "-o", file]
+        done = subprocess.run(call, capture_output=True, text=True)
+        folder.chmod(0o755)
+        assert (done.returncode, done.stderr) == (2, f"{file}: permission denied\n")
+        assert [path.read_text() for path in folder.iterdir()] == ["old"]
 
 
 def test_a_name_as_long_as_a_name_can_be(tmp_path):
