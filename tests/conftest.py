@@ -105,3 +105,10 @@ def run(*command, **options):
 def topomap():
     """The command ``topomap``, run from the repository's folder."""
     return lambda *arguments, **options: run("topomap", *arguments, **options)
+
+
+def pytest_terminal_summary(terminalreporter):
+    """What tests have counted, by record_property."""
+    for report in terminalreporter.stats.get("passed", []):
+        for name, number in report.user_properties:
+            terminalreporter.write_line(f"{report.nodeid.split('::')[-1]}: {number} {name}")

@@ -276,6 +276,7 @@ def test_comments_strings_and_layout_are_read(tmp_path):
         ["solve", GRID, "--timeout", "nan"],
         ["solve", GRID, "--bound", "3000000000"],
         ["count", GRID, "--horizon", "3000000000"],
+        ["generate", "grid", "2", "2", "--route=--"],
     ],
 )
 def test_bad_usage_is_one_line(topomap, arguments):

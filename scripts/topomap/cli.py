@@ -23,7 +23,7 @@ class Parser(argparse.ArgumentParser):
     """An argument parser whose errors are one line."""
 
     def _print_message(self, message: str, file: Any = None) -> None:
-        sys.stdout.write(message)  # argparse's own passes over what cannot be written
+        print(message, end="")  # argparse's own passes over what cannot be written
 
     def error(self, message: str) -> NoReturn:
         raise InputError(f"{self.prog}: {message} (see {self.prog} --help)")
@@ -33,7 +33,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command; returns its exit status."""
     try:
         try:
-            args = _parser().parse_args(arguments)
+            args = parse(arguments)
             status: int = args.run(args)
         except SystemExit:  # --help and --version
             status = DONE
@@ -53,6 +53,14 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except OSError as error:
         say(f"{error.filename or 'standard output'}: {(error.strerror or str(error)).lower()}")
         return BAD_INPUT
+
+
+def parse(words: Sequence[str] | None) -> argparse.Namespace:
+    """The arguments of a call. Raises InputError on bad usage."""
+    args = _parser().parse_args(words)
+    if [] in vars(args).values():  # what Python 3.11 makes of --name=--
+        raise InputError("topomap: -- is not a value (see topomap --help)")
+    return args
 
 
 @cache
@@ -370,7 +378,7 @@ def _add_family(group: Any) -> None:
         "name the instances of a family file, and write the call of each where it changed",
         "  topomap family instances/batch.txt -d build/instances",
     )
-    command.set_defaults(parse=lambda words: _parser().parse_args(words))
+    command.set_defaults(parse=parse)
     command.add_argument("file", metavar="FAMILY")
     command.add_argument(
         "-d",

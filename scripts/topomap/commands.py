@@ -344,7 +344,7 @@ def branching_nodes(args: argparse.Namespace) -> int:
 def table(args: argparse.Namespace) -> int:
     """Count the paper's table, or what is beyond it, print it and write it as JSON."""
     name = "beyond" if args.beyond else "figure4"
-    path = args.output or f"results/{name}.json"
+    path = f"results/{name}.json" if args.output is None else args.output
     jobs = args.jobs or os.cpu_count() or 1
     rows: list[dict[str, Any]] = []
     if args.resume and not args.beyond:
@@ -362,9 +362,9 @@ def table(args: argparse.Namespace) -> int:
             for row in counted:
                 rows = sorted([*rows, row], key=lambda row: (row["environment"], row["planarity"]))
                 say(f"counted {len(rows)} of {columns} columns")
-        except Stopped:
+        except Stopped as stopped:  # the file keeps an older, complete table
             _show_table(args, rows, columns)
-            raise KeyboardInterrupt from None  # the file keeps an older, complete table
+            raise (KeyboardInterrupt if str(stopped) == INTERRUPT else MemoryError) from None
         json.dump({"complete": True, "rows": rows}, file, indent=1)
         file.write("\n")
         if args.beyond:
@@ -396,7 +396,8 @@ def family(args: argparse.Namespace) -> int:
     calls: dict[str, list[str]] = {}
     for line, call in expand(args.file):
         try:
-            parsed = args.parse(["generate", *call])
+            with contextlib.redirect_stdout(None):
+                parsed = args.parse(["generate", *call])
             if parsed.output or parsed.truth or parsed.json:
                 raise InputError("-o, --truth and --json have no place in a family")
             made = _instance(parsed)

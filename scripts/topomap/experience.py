@@ -211,7 +211,7 @@ def _fact(text: str, source: str, line: int) -> clingo.Symbol:
         raise InputError(f"{source}:{line}: {_short(text)} is nested deeper than {DEEPEST}")
     try:
         symbol = clingo.parse_term(text, logger=lambda *_: None)
-    except RuntimeError:
+    except (RuntimeError, UnicodeDecodeError):  # clingo's message may cut a letter in two
         raise refused from None
     # clingo computes, and wraps numbers that are too large, without a word.
     if str(symbol) != _SPACE.sub(r"\1", text):

@@ -57,7 +57,7 @@ def output(path: str | None, parents: bool = False) -> Iterator[IO[str]]:
             raise OSError(ELOOP, os.strerror(ELOOP))
         if parents:
             target.parent.mkdir(parents=True, exist_ok=True)
-        if target.is_dir():
+        if target.is_dir() or path.endswith("/"):
             raise IsADirectoryError(EISDIR, os.strerror(EISDIR))
         if Path(path).exists() and not Path(path).is_file():
             with Path(path).open("w", encoding="utf-8", errors="backslashreplace") as device:
