@@ -22,6 +22,10 @@ TRIED = Counter()  # what was tried how often, for the last lines of a test run
 
 
 def pytest_terminal_summary(terminalreporter):
+    """What tests have counted, here and by record_property."""
+    for report in terminalreporter.stats.get("passed", []):
+        for what, number in report.user_properties:
+            TRIED[what] += number
     for what, number in sorted(TRIED.items()):
         terminalreporter.write_line(f"tried: {number:,} {what}")
 
@@ -105,10 +109,3 @@ def run(*command, **options):
 def topomap():
     """The command ``topomap``, run from the repository's folder."""
     return lambda *arguments, **options: run("topomap", *arguments, **options)
-
-
-def pytest_terminal_summary(terminalreporter):
-    """What tests have counted, by record_property."""
-    for report in terminalreporter.stats.get("passed", []):
-        for name, number in report.user_properties:
-            terminalreporter.write_line(f"{report.nodeid.split('::')[-1]}: {number} {name}")

@@ -10,6 +10,8 @@ from dataclasses import dataclass, replace
 from functools import cache
 
 from conftest import PARTS, THEORY, Truth
+from flawed import DEMANDS, INSTANCES, by_hand, drawn
+from topomap.check import by_definition, by_rules
 from topomap.experience import Experience
 from worlds import random_experience
 
@@ -146,7 +148,28 @@ def hypotheses(facts: str, arguments: tuple[str, ...], truth: Truth) -> Iterator
     yield least(("genus", "minimal"), lambda h: (h.genus(), *h.cost()), truth.final)
 
 
-SUITES = (theory,)
+def check() -> Iterator[Query]:
+    """Maps, sound and with errors, with the violations that are there by definition. Of a map
+    with two links at a gateway the rules of paths are not defined, so some are left out."""
+    for experience, at in [*by_hand(), *drawn(120)]:
+        for demands in (DEMANDS, ()):
+            violations = by_definition(experience, at, demands)
+            if "schema" in dict(violations) and violations != by_rules(experience, at, demands):
+                continue
+            facts = [f"at({step},{place},{slot})." for step, place, slot in at]
+            facts += [f"demand({demand})." for demand in demands]
+            shown = frozenset(f"violation({rule},{step})" for rule, step in violations)
+            yield Query(("check",), experience.facts() + "".join(facts), frozenset({shown}))
+
+
+def faults() -> Iterator[Query]:
+    """Instances with faults."""
+    for facts, errors in INSTANCES.items():
+        shown = frozenset(f"error({error})" for error in errors.split())
+        yield Query(("input",), facts, frozenset({shown}))
+
+
+SUITES = (theory, check, faults)
 
 
 @cache

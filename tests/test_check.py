@@ -6,120 +6,30 @@ import random
 
 import pytest
 from conftest import ENCODINGS, TRIED, run
-from topomap import search
+from flawed import DEMANDS, MAPS, mapped, of_texts, placed, with_errors
 from topomap.check import STEP_RULES, by_definition, by_rules
-from topomap.experience import parse
-from topomap.solver import Query
-from worlds import random_experience
 
 GRID = "instances/grid-3x3-snake.lp"
-CORRIDOR = ("0", "0: 0 2", "2: 0", "0: 0 2")
-SQUARE = ("0 3", "0: 0 3", "3: 0 3", "3: 0 3", "3: 0 1")
-LASSO = ("0 1 2", "0: 0 1 2 3", "0: 0 1 2", "1: 0", "0: 0 1 3", "1: 0 1 2 3")
-TRIANGLE = ("0 3", "0: 0 1", "1: 0 1", "1: 0 1")
-EARS = ("0 1 2 3", "0: 0 1", "1: 0 1", "1: 0 1 2 3", "1: 0 1", "1: 0 1", "1: 0 1 2 3")
-TWISTED = ("0 1", "0: 0 1", "1: 0 3", "3: 0 3")
-CORNERS = ("0 1", "0: 0 1", "1: 0 3")
-# The rule, what is seen ("turn: gateways", and landmarks), a sound map and a map that breaks
-# it, as a place and a gateway after each step, and the step at which it does.
-CASES = [
-    ("exactly_one", CORRIDOR, "0.0 1.0 2.0 1.2", "0.0 1.0 - 1.2", 2),
-    ("exactly_one", CORRIDOR, "0.0 1.0 2.0 1.2", "0.0 1.0 2.0 1.2 0.0", 4),
-    ("exactly_one", CORRIDOR, "0.0 1.0 2.0 1.2", "0.0 1.0/0.0 2.0 1.2", 1),
-    ("naming", CORRIDOR, "0.0 1.0 2.0 1.2", "0.0 2.0 2.0 2.0", 1),
-    ("naming", ("0 2", "2: 0 2"), "0.0 1.0", "0.2 1.0", 0),
-    ("gateway", CORNERS, "0.0 1.0 0.1", "0.0 1.0 0.2", 2),
-    ("view", ("0 1", "0: 0 1", "1: 0 1 3"), "0.0 1.0 2.0", "0.0 1.0 0.1", 2),
-    ("view", ("0 1 3", "0: 0 1", "1: 0 1"), "0.0 1.0 2.0", "0.0 1.0 0.3", 2),
-    ("landmark", ("0 a", "0: 0 2 a", "2: 0", "0: 0 2 a"), "0.0 1.0 2.0 1.2", "0.0 1.0 0.0 1.2", 2),
-    ("landmark", ("0", "0: 0 2", "2: 0", "0: 0 2 a"), "0.0 1.0 2.0", "0.0 1.0 2.0 1.2", 3),
-    ("landmark", ("0", "0: 0 2 a", "2: 0", "0: 0 2"), "0.0 1.0 2.0", "0.0 1.0 2.0 1.2", 3),
-    ("schema", CORRIDOR, "0.0 1.0 2.0 1.2", "0.0 1.0 2.0 3.0", 3),
-    ("schema", ("0 1", "0: 0 1"), "0.0 1.0", "0.0 0.0", 1),
-    ("path_twice", LASSO, "0.0 1.0 0.0 3.0 0.1 5.0", "0.0 1.0 0.0 3.0 0.1 1.1", 5),
-    ("path_twice", ("0 1", "0: 0 3"), "0.0 1.0", "0.0 0.1", 1),
-    ("path_circular", LASSO, "0.0 1.0 0.0 3.0 0.1 5.0", "0.0 1.0 0.0 3.0 0.1 1.2", 5),
-    ("planar", EARS, "0.0 1.0 2.0 0.2 4.0 5.0 6.0", "0.0 1.0 2.0 0.2 4.0 5.0 0.1", 6),
-    ("bound(3)", SQUARE, "0.0 1.0 2.0", "0.0 1.0 2.0 3.0 0.3", 3),
-    ("closed", SQUARE, "0.0 1.0 2.0 3.0 0.3", "0.0 1.0 2.0 3.0 4.0", 4),
-    ("travelled", SQUARE, "0.0 1.0 2.0 3.0 0.3", "0.0 1.0 2.0 3.0", 3),
-    ("travelled", ("0 2", "0: 0"), "0.0 1.0", "0.0", 0),
-    ("boundary", CORNERS, "0.0 1.0 2.0", "0.0 1.0 0.1", 2),
-    ("boundary", TWISTED, "0.0 1.0 2.0", "0.0 1.0 2.0 0.1", 3),
-    ("perpendicular", CORNERS, "0.0 1.0 2.0", "0.0 1.0 0.1", 2),
-    ("perpendicular", TRIANGLE, "0.0 1.0 2.0 3.0", "0.0 1.0 2.0 0.3", 3),
-]
-
-
-def seen(steps):
-    """The experience of such texts."""
-    facts = ["slots(4)."]
-    for step, text in enumerate(steps):
-        turn, _, view = text.rpartition(":")
-        facts += [f"turn({step},{turn})."] if step else []
-        facts += [
-            f"view({step},{word})." if word.isdigit() else f"landmark({step},{word})."
-            for word in view.split()
-        ]
-    return parse(" ".join(facts), "test")
-
-
-def placed(text):
-    return [
-        (step, *map(int, dstate.split(".")))
-        for step, dstates in enumerate(text.split())
-        for dstate in dstates.split("/")
-        if dstate != "-"
-    ]
 
 
 @pytest.mark.parametrize("judge", [by_rules, by_definition])
-@pytest.mark.parametrize(("rule", "steps", "sound", "broken", "step"), CASES)
+@pytest.mark.parametrize(("rule", "steps", "sound", "broken", "step"), MAPS)
 def test_a_rule_holds_and_bites(judge, rule, steps, sound, broken, step):
     demands = [] if rule in (*STEP_RULES, "path_twice", "path_circular") else [rule]
-    assert not judge(seen(steps), placed(sound), demands)
-    found = judge(seen(steps), placed(broken), demands)
+    assert not judge(of_texts(steps), placed(sound), demands)
+    found = judge(of_texts(steps), placed(broken), demands)
     assert (rule, step) in found
     assert demands == [] or found == {(rule, step)}
-
-
-def errors_in(draw, experience, at):
-    """The same with an error or two."""
-    wrong = list(at)
-    for _ in range(draw.choice((1, 1, 2))):
-        step = draw.randrange(len(wrong))
-        kind = draw.choice(("gone", "two", "place", "slot", "cut", "more"))
-        if kind == "gone" and len(wrong) > 1:
-            del wrong[step]
-        elif kind == "two":
-            wrong.append((wrong[step][0], draw.randrange(experience.steps + 1), 0))
-        elif kind == "place":
-            place = draw.randrange(-1, experience.steps + 2)
-            wrong[step] = wrong[step][0], place, wrong[step][2]
-        elif kind == "slot":
-            slot = draw.randrange(-1, experience.slots + 1)
-            wrong[step] = *wrong[step][:2], slot
-        elif kind == "cut":
-            del wrong[step + 1 :]
-        else:
-            wrong.append((draw.randrange(-2, experience.steps + 4), 0, 0))
-    return wrong
 
 
 def agree_on_errors(draw, steps=10):
     """On maps with errors the checkers agree; what a broken step does to the map as a whole
     is not defined, so there only the rules of steps count."""
-    demands = ["planar", "bound(3)", "closed", "travelled", "boundary", "perpendicular"]
-    experience = random_experience(draw, steps)
-    node = search.root(experience, Query(places=6))
-    for _ in search.best_first(node):
-        if node.steps == experience.steps:
-            break
-    sound = [(step, *dstate) for step, dstate in enumerate(node.dstates)]
-    for at in [sound, *(errors_in(draw, experience, sound) for _ in range(5))]:
+    experience, sound = mapped(draw, steps)
+    for at in [sound, *(with_errors(draw, experience, sound) for _ in range(5))]:
         TRIED["maps with errors judged by both checkers"] += 1
-        rules = by_rules(experience, at, demands)
-        definition = by_definition(experience, at, demands)
+        rules = by_rules(experience, at, DEMANDS)
+        definition = by_definition(experience, at, DEMANDS)
         of_steps = [{v for v in found if v[0] in STEP_RULES} for found in (rules, definition)]
         assert of_steps[0] == of_steps[1], (experience.facts(), at)
         assert of_steps[0] or rules == definition, (experience.facts(), at)

@@ -17,9 +17,11 @@ import string
 
 import networkx as nx
 import pytest
-from topomap import cli, figure4
+from topomap import beyond, cli, figure4, search
 from topomap.environment import grid
 from topomap.generate import instance
+from topomap.report import Report
+from topomap.solver import Query, Watch
 from worlds import random_experience
 
 SECONDS = 10
@@ -89,6 +91,8 @@ def made(draw, kind):
     """A good input of this kind."""
     if kind == "instance":
         return "% made\n" + random_experience(draw, 5).facts()
+    if kind == "maps":
+        return maps(draw)
     if kind == "truth":
         at = instance(grid(2, 2), "snake").truth
         return json.dumps({"maps": [{"at": [[t, *dstate] for t, dstate in enumerate(at)]}]})
@@ -100,6 +104,21 @@ def made(draw, kind):
             "maze 2 3 --route tour --seed {0,1}\nhexagons 1 1 --route walk --steps 3 --name a.b\n",
         ]
     )
+
+
+def maps(draw):
+    """Maps as solve writes them, or clingo."""
+    seen = instance(grid(2, 2), "snake").experience
+    query = Query(frozenset(["closed"]))
+    out = io.StringIO()
+    report = Report(out, "good.lp", seen, query, None, None, as_json=True)
+    found = list(search.hypotheses(seen, query, Watch(quiet=True)))
+    for one in found:
+        report.add(one)
+    report.end(None)
+    values = [[f"at({t},{p},{s})" for t, (p, s) in enumerate(one.at)] for one in found]
+    clingo = {"Solver": "clingo", "Call": [{"Witnesses": [{"Value": atoms} for atoms in values]}]}
+    return draw.choice([out.getvalue(), json.dumps(clingo)])
 
 
 def network(draw):
@@ -119,10 +138,19 @@ READERS = {  # the calls that read a file, and how to spoil it
             "solve FILE --optimal --json --limit 5 --timeout 5 -o out",
             "solve good.lp FILE --limit 2 --timeout 5 --json -o out",
             "count FILE --horizon 4 --timeout 5 --json -o out",
+            "search FILE --timeout 5 --json -o out",
+            "branching FILE --timeout 5 -o out",
         ],
         EDITS,
     ),
     "truth": (["solve good.lp --truth FILE --timeout 5 --json -o out"], (*EDITS, on_values)),
+    "maps": (
+        [
+            "check good.lp FILE -o out",
+            "check good.lp FILE --planar --closed --bound 4 --json -o out",
+        ],
+        (*EDITS, on_values),
+    ),
     "network": (
         [
             "generate network FILE --route tour -o out",
@@ -144,6 +172,7 @@ def feed(tmp_path, monkeypatch):
     demanding of it what every command owes."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(figure4, "COLUMNS", figure4.COLUMNS[:1])
+    monkeypatch.setattr(beyond, "COLUMNS", [(2, 3, None, True)])
     (tmp_path / "good.lp").write_text(GRID)
     (tmp_path / "net.graphml").write_text(network(random.Random(0)))
     (tmp_path / "bad.lp").write_text("slots(5).")

@@ -9,38 +9,12 @@ import clingo
 import pytest
 from clingo import ast
 from conftest import ENCODINGS, ROOT, run
+from flawed import INSTANCES
 from topomap.errors import InputError
 from topomap.experience import LARGEST, parse
 from worlds import random_experience
 
 PROGRAM = (ENCODINGS / "input.lp").read_text()
-CASES = {
-    "slots(4). view(0,0).": "",
-    "slots(4). view(0,0). view(0,3). turn(1,3). view(1,0). landmark(1,a).": "",
-    "": "-1,no_slots 0,no_view",
-    "slots(4;6). view(0,0).": "-1,two_slots",
-    "slots(a). view(0,0).": "-1,no_number(a)",
-    "slots(5). view(0,0).": "-1,odd_slots(5)",
-    "slots(0). view(0,0).": "-1,few_slots(0) 0,slot(0)",
-    "slots(1000002). view(0,0).": "-1,many_slots(1000002)",
-    "slots(4). view(0,0). view(-1,0).": "-1,no_step(-1)",
-    "slots(4). view(0,0). landmark(#inf,a).": "-1,no_step(#inf)",
-    "slots(4). view(0,0). turn(a,0).": "-1,no_step(a)",
-    "slots(4). view(0,0). turn(2,0). turn(4,0). view(2,0). view(4,0).": "1,no_turn 3,no_turn",
-    "slots(4). view(0,0). view(1,0).": "1,no_step",
-    "slots(4). view(0,0). turn(0,0).": "0,turn_at_start",
-    "slots(4). view(0,0). view(0,1). turn(1,0). turn(1,1). view(1,0).": "1,two_turns",
-    "slots(4). view(0,0). turn(1,0).": "1,no_view",
-    "slots(4). turn(1,0). view(1,0).": "0,no_view",
-    "slots(4). view(0,1).": "0,no_slot_0",
-    "slots(4). view(0,0). view(0,4). view(0,-1).": "0,slot(4) 0,slot(-1)",
-    "slots(4). view(0,0). turn(1,4). view(1,0).": "1,slot(4) 1,no_gateway(4)",
-    "view(0,0). view(0,a).": "-1,no_slots 0,slot(a)",
-    "slots(4). view(0,0). turn(1,3). view(1,0).": "1,no_gateway(3)",
-    "slots(2000000000). turn(2147483647,0).": (
-        "-1,many_slots(2000000000) 0,no_view 1,no_turn 2147483647,no_view"
-    ),
-}
 KINDS = {  # what topomap.experience says, and the error that says the same
     r"no facts.*": "-1,no_slots",
     r"\d+ facts slots.*": "-1,two_slots",
@@ -70,9 +44,9 @@ def errors(facts, program=PROGRAM):
     return models[0]
 
 
-@pytest.mark.parametrize("facts", CASES)
+@pytest.mark.parametrize("facts", INSTANCES)
 def test_each_fault_has_its_error(facts):
-    assert errors(facts) == sorted(f"error({error})" for error in CASES[facts].split())
+    assert errors(facts) == sorted(f"error({error})" for error in INSTANCES[facts].split())
 
 
 @cache
@@ -86,7 +60,7 @@ def rules():
 def test_no_statement_can_be_removed(number):
     """Without it a case has other errors, or clingo has something to say."""
     rest = "\n".join(str(rule) for n, rule in enumerate(rules()) if n != number)
-    for facts, expected in CASES.items():
+    for facts, expected in INSTANCES.items():
         try:
             if errors(facts, rest) != sorted(f"error({error})" for error in expected.split()):
                 return

@@ -182,8 +182,10 @@ def _truth(file: str, experience: Experience, horizon: int | None) -> Topologica
     at = [(step, place, slot) for step, place, slot in entry[0]["at"]] if entry else []
     if len(at) != experience.steps + 1:
         raise InputError(f"{file}: {len(at) - 1} steps, the instance has {experience.steps}")
-    if wrong := sorted(STEP_RULES & {rule for rule, _ in by_definition(experience, at)}):
-        raise InputError(f"{file}: no map of this instance, it breaks {', '.join(wrong)}")
+    wrong = [(step, rule) for rule, step in by_definition(experience, at) if rule in STEP_RULES]
+    if wrong:
+        step, rule = min(wrong)
+        raise InputError(f"{file}: step {step}: it breaks the rule {rule} of check.lp")
     last = experience.steps if horizon is None else horizon
     return experience.map_of(tuple((place, slot) for _, place, slot in sorted(at)[: last + 1]))
 

@@ -8,12 +8,14 @@ import sys
 import tempfile
 from collections.abc import Iterator
 from errno import EISDIR, ELOOP
+from itertools import islice
 from pathlib import Path
 from typing import IO
 
 from topomap.errors import InputError, of_file
 
 MOST_BYTES = 2**25
+_CHUNK = 2**20
 _TEMPORARY = ".topomap-"
 
 
@@ -21,7 +23,7 @@ def data(path: str | Path, most: int = MOST_BYTES) -> bytes:
     """The bytes of a file, ``most`` at most. Raises InputError where it cannot be read."""
     try:
         with Path(path).open("rb") as file:
-            content = file.read(most + 1)
+            content = b"".join(islice(iter(lambda: file.read(_CHUNK), b""), most // _CHUNK + 1))
     except OSError as error:
         raise of_file(path, error) from None
     except ValueError:

@@ -2,6 +2,7 @@
 
 import fcntl
 import json
+import os
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any, BinaryIO
@@ -16,9 +17,9 @@ class Journal:
     """A run in units: values are written, and a unit is done when it is committed.
 
     ``run`` says what is computed. With ``resume`` the journal of an earlier, equal run is
-    gone on with after its last unit that was done. Without an output file, or if that
-    is no regular one, nothing is kept. Raises InputError where the
-    file cannot be had, another process has it, or it is of another run.
+    gone on with after its last unit that was done. Without an output file, or if that is no
+    regular one, nothing is kept. Raises InputError where the file cannot be had, another
+    process has it, or it is of another run.
     """
 
     def __init__(
@@ -26,15 +27,15 @@ class Journal:
     ):
         self.path: Path | None = None
         self.complete = False
-        self._end = 0
+        self._end = self._units = 0
         self._reader: BinaryIO | None = None
         head = json.dumps({"topomap": __version__, **(run or {})}) + "\n"
         if output is None or (Path(output).exists() and not Path(output).is_file()):
             if resume:
                 raise InputError("--resume: it needs an output file (-o)")
             return
-        self.path = Path(f"{Path(output).resolve()}.part")
         try:
+            self.path = Path(os.path.realpath(output) + ".part")
             self._file = self.path.open("a+b")
             fcntl.flock(self._file, fcntl.LOCK_EX | fcntl.LOCK_NB)
             if resume and self.path.stat().st_size:
@@ -46,9 +47,11 @@ class Journal:
             self._reader = self.path.open("rb")
             self._reader.readline()
         except BlockingIOError:
-            raise InputError(f"{self.path}: another run is writing it") from None
+            raise InputError(f"{output}: another run is writing it") from None
         except OSError as error:
-            raise of_file(self.path, error) from None
+            raise of_file(output, error) from None
+        except ValueError:
+            raise InputError(f"{output}: not the name of a file") from None
 
     def _read(self, head: str) -> None:
         self._file.seek(0)
@@ -60,6 +63,7 @@ class Journal:
         self._end = self._file.tell()
         for line in self._file:
             if line == DONE:
+                self._units += 1
                 self._end = self._file.tell()
 
     @property
@@ -91,6 +95,7 @@ class Journal:
     def commit(self) -> None:
         """Note that the unit is done."""
         self._write(DONE.decode().strip(), flush=True)
+        self._units += 1
 
     def _write(self, line: str, flush: bool = False) -> None:
         if self._reader is None:
@@ -106,10 +111,11 @@ class Journal:
         return self
 
     def __exit__(self, kind: type[BaseException] | None, *_: object) -> None:
-        """Let go of the file; it goes when the run was complete, and was written down."""
+        """Let go of the file; it goes when the run was complete and written down, or has done
+        nothing."""
         if self._reader is None or self.path is None:
             return
         self._file.close()
         self._reader.close()
-        if self.complete and kind is None:
+        if not self._units or (self.complete and kind is None):
             self.path.unlink()

@@ -5,11 +5,10 @@ writes; or a list of maps. A map needs only ``at``, ``[[T,P,S], ...]``.
 """
 
 import json
+import re
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import Any
-
-import clingo
 
 from topomap.check import STEP_RULES, At, Grown, Violation, by_definition, by_rules
 from topomap.errors import InputError
@@ -18,6 +17,7 @@ from topomap.files import text
 from topomap.topology import Gateway, TopologicalMap
 
 MOST_BYTES = 2**32
+_AT = re.compile(r"at\((-?\d+),(-?\d+),(-?\d+)\)", re.ASCII)
 DEMANDS = ("planar", "closed", "travelled", "boundary", "perpendicular")
 
 
@@ -92,16 +92,18 @@ def _is_at(at: object) -> bool:
 
 def _of_clingo(path: str, data: dict[str, Any]) -> Document:
     maps = []
+    seen = set()
     try:
         for witness in (w for call in data["Call"] for w in call.get("Witnesses", [])):
-            atoms = [clingo.parse_term(atom) for atom in witness["Value"] if atom[:3] == "at("]
-            at = [[term.number for term in atom.arguments] for atom in atoms]
-            if not _is_at(at):
-                raise TypeError
+            atoms = [_AT.fullmatch(atom) for atom in witness["Value"] if atom[:3] == "at("]
+            at = tuple(sorted(tuple(map(int, match.groups())) for match in atoms if match))
+            if not all(atoms) or not _is_at([list(dstate) for dstate in at]):
+                raise ValueError
             # Under optimisation clingo gives the first of the best maps twice.
-            if "Costs" not in witness or {"at": sorted(at)} not in maps:
-                maps.append({"at": sorted(at)})
-    except (LookupError, TypeError, AttributeError, RuntimeError):
+            if "Costs" not in witness or at not in seen:
+                maps.append({"at": at})
+            seen.add(at)
+    except (LookupError, TypeError, ValueError, AttributeError):
         raise InputError(f"{path}: not what clingo --outf=2 writes") from None
     return Document(path, maps)
 

@@ -1,0 +1,150 @@
+"""Maps and instances with errors, and what is wrong with each."""
+
+import random
+from collections.abc import Iterator
+
+from topomap import search
+from topomap.experience import Experience, parse
+from topomap.solver import Query
+from worlds import random_experience
+
+At = list[tuple[int, int, int]]
+DEMANDS = ("planar", "bound(3)", "closed", "travelled", "boundary", "perpendicular")
+CORRIDOR = ("0", "0: 0 2", "2: 0", "0: 0 2")
+SQUARE = ("0 3", "0: 0 3", "3: 0 3", "3: 0 3", "3: 0 1")
+LASSO = ("0 1 2", "0: 0 1 2 3", "0: 0 1 2", "1: 0", "0: 0 1 3", "1: 0 1 2 3")
+TRIANGLE = ("0 3", "0: 0 1", "1: 0 1", "1: 0 1")
+EARS = ("0 1 2 3", "0: 0 1", "1: 0 1", "1: 0 1 2 3", "1: 0 1", "1: 0 1", "1: 0 1 2 3")
+TWISTED = ("0 1", "0: 0 1", "1: 0 3", "3: 0 3")
+CORNERS = ("0 1", "0: 0 1", "1: 0 3")
+# The rule, what is seen ("turn: gateways", and landmarks), a sound map and a map that breaks
+# it, as a place and a gateway after each step, and the step at which it does.
+MAPS = [
+    ("exactly_one", CORRIDOR, "0.0 1.0 2.0 1.2", "0.0 1.0 - 1.2", 2),
+    ("exactly_one", CORRIDOR, "0.0 1.0 2.0 1.2", "0.0 1.0 2.0 1.2 0.0", 4),
+    ("exactly_one", CORRIDOR, "0.0 1.0 2.0 1.2", "0.0 1.0/0.0 2.0 1.2", 1),
+    ("naming", CORRIDOR, "0.0 1.0 2.0 1.2", "0.0 2.0 2.0 2.0", 1),
+    ("naming", ("0 2", "2: 0 2"), "0.0 1.0", "0.2 1.0", 0),
+    ("gateway", CORNERS, "0.0 1.0 0.1", "0.0 1.0 0.2", 2),
+    ("view", ("0 1", "0: 0 1", "1: 0 1 3"), "0.0 1.0 2.0", "0.0 1.0 0.1", 2),
+    ("view", ("0 1 3", "0: 0 1", "1: 0 1"), "0.0 1.0 2.0", "0.0 1.0 0.3", 2),
+    ("landmark", ("0 a", "0: 0 2 a", "2: 0", "0: 0 2 a"), "0.0 1.0 2.0 1.2", "0.0 1.0 0.0 1.2", 2),
+    ("landmark", ("0", "0: 0 2", "2: 0", "0: 0 2 a"), "0.0 1.0 2.0", "0.0 1.0 2.0 1.2", 3),
+    ("landmark", ("0", "0: 0 2 a", "2: 0", "0: 0 2"), "0.0 1.0 2.0", "0.0 1.0 2.0 1.2", 3),
+    ("schema", CORRIDOR, "0.0 1.0 2.0 1.2", "0.0 1.0 2.0 3.0", 3),
+    ("schema", ("0 1", "0: 0 1"), "0.0 1.0", "0.0 0.0", 1),
+    ("path_twice", LASSO, "0.0 1.0 0.0 3.0 0.1 5.0", "0.0 1.0 0.0 3.0 0.1 1.1", 5),
+    ("path_twice", ("0 1", "0: 0 3"), "0.0 1.0", "0.0 0.1", 1),
+    ("path_circular", LASSO, "0.0 1.0 0.0 3.0 0.1 5.0", "0.0 1.0 0.0 3.0 0.1 1.2", 5),
+    ("planar", EARS, "0.0 1.0 2.0 0.2 4.0 5.0 6.0", "0.0 1.0 2.0 0.2 4.0 5.0 0.1", 6),
+    ("bound(3)", SQUARE, "0.0 1.0 2.0", "0.0 1.0 2.0 3.0 0.3", 3),
+    ("closed", SQUARE, "0.0 1.0 2.0 3.0 0.3", "0.0 1.0 2.0 3.0 4.0", 4),
+    ("travelled", SQUARE, "0.0 1.0 2.0 3.0 0.3", "0.0 1.0 2.0 3.0", 3),
+    ("travelled", ("0 2", "0: 0"), "0.0 1.0", "0.0", 0),
+    ("boundary", CORNERS, "0.0 1.0 2.0", "0.0 1.0 0.1", 2),
+    ("boundary", TWISTED, "0.0 1.0 2.0", "0.0 1.0 2.0 0.1", 3),
+    ("perpendicular", CORNERS, "0.0 1.0 2.0", "0.0 1.0 0.1", 2),
+    ("perpendicular", TRIANGLE, "0.0 1.0 2.0 3.0", "0.0 1.0 2.0 0.3", 3),
+]
+
+
+def of_texts(steps: tuple[str, ...]) -> Experience:
+    """The experience of such texts."""
+    facts = ["slots(4)."]
+    for step, text in enumerate(steps):
+        turn, _, view = text.rpartition(":")
+        facts += [f"turn({step},{turn})."] if step else []
+        facts += [
+            f"view({step},{word})." if word.isdigit() else f"landmark({step},{word})."
+            for word in view.split()
+        ]
+    return parse(" ".join(facts), "test")
+
+
+def placed(text: str) -> At:
+    """A map of such a text."""
+    return [
+        (step, *map(int, dstate.split(".")))
+        for step, dstates in enumerate(text.split())
+        for dstate in dstates.split("/")
+        if dstate != "-"
+    ]
+
+
+def with_errors(draw: random.Random, experience: Experience, at: At) -> At:
+    """The same with an error or two."""
+    wrong = list(at)
+    for _ in range(draw.choice((1, 1, 2))):
+        step = draw.randrange(len(wrong))
+        kind = draw.choice(("gone", "two", "place", "slot", "cut", "more"))
+        if kind == "gone" and len(wrong) > 1:
+            del wrong[step]
+        elif kind == "two":
+            wrong.append((wrong[step][0], draw.randrange(experience.steps + 1), 0))
+        elif kind == "place":
+            place = draw.randrange(-1, experience.steps + 2)
+            wrong[step] = wrong[step][0], place, wrong[step][2]
+        elif kind == "slot":
+            slot = draw.randrange(-1, experience.slots + 1)
+            wrong[step] = *wrong[step][:2], slot
+        elif kind == "cut":
+            del wrong[step + 1 :]
+        else:
+            wrong.append((draw.randrange(-2, experience.steps + 4), 0, 0))
+    return wrong
+
+
+def mapped(draw: random.Random, steps: int) -> tuple[Experience, At]:
+    """A random experience, and a sound map of it with few paths."""
+    experience = random_experience(draw, steps)
+    for node in search.best_first(search.root(experience, Query())):
+        if node.steps == experience.steps:
+            return experience, [(step, *dstate) for step, dstate in enumerate(node.dstates)]
+    raise AssertionError("no map")
+
+
+def by_hand() -> Iterator[tuple[Experience, At]]:
+    """The maps above."""
+    for _, steps, sound, broken, _ in MAPS:
+        yield of_texts(steps), placed(sound)
+        yield of_texts(steps), placed(broken)
+
+
+def drawn(number: int) -> Iterator[tuple[Experience, At]]:
+    """Random maps, sound and with errors."""
+    for seed in range(number):
+        draw = random.Random(f"flawed {seed}")
+        experience, at = mapped(draw, 10)
+        yield experience, at
+        for _ in range(3):
+            yield experience, with_errors(draw, experience, at)
+
+
+# Facts, and the errors that input.lp shows.
+INSTANCES = {
+    "slots(4). view(0,0).": "",
+    "slots(4). view(0,0). view(0,3). turn(1,3). view(1,0). landmark(1,a).": "",
+    "": "-1,no_slots 0,no_view",
+    "slots(4;6). view(0,0).": "-1,two_slots",
+    "slots(a). view(0,0).": "-1,no_number(a)",
+    "slots(5). view(0,0).": "-1,odd_slots(5)",
+    "slots(0). view(0,0).": "-1,few_slots(0) 0,slot(0)",
+    "slots(1000002). view(0,0).": "-1,many_slots(1000002)",
+    "slots(4). view(0,0). view(-1,0).": "-1,no_step(-1)",
+    "slots(4). view(0,0). landmark(#inf,a).": "-1,no_step(#inf)",
+    "slots(4). view(0,0). turn(a,0).": "-1,no_step(a)",
+    "slots(4). view(0,0). turn(2,0). turn(4,0). view(2,0). view(4,0).": "1,no_turn 3,no_turn",
+    "slots(4). view(0,0). view(1,0).": "1,no_step",
+    "slots(4). view(0,0). turn(0,0).": "0,turn_at_start",
+    "slots(4). view(0,0). view(0,1). turn(1,0). turn(1,1). view(1,0).": "1,two_turns",
+    "slots(4). view(0,0). turn(1,0).": "1,no_view",
+    "slots(4). turn(1,0). view(1,0).": "0,no_view",
+    "slots(4). view(0,1).": "0,no_slot_0",
+    "slots(4). view(0,0). view(0,4). view(0,-1).": "0,slot(4) 0,slot(-1)",
+    "slots(4). view(0,0). turn(1,4). view(1,0).": "1,slot(4) 1,no_gateway(4)",
+    "view(0,0). view(0,a).": "-1,no_slots 0,slot(a)",
+    "slots(4). view(0,0). turn(1,3). view(1,0).": "1,no_gateway(3)",
+    "slots(2000000000). turn(2147483647,0).": (
+        "-1,many_slots(2000000000) 0,no_view 1,no_turn 2147483647,no_view"
+    ),
+}
