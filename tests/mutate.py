@@ -25,6 +25,7 @@ from clingo import ast
 from conftest import ENCODINGS, ROOT
 from corpus import Query, queries
 from topomap.errors import InputError
+from topomap.experience import LARGEST
 from topomap.files import output
 from tqdm import tqdm
 
@@ -107,7 +108,8 @@ def changes(node: ast.AST, body: bool = False) -> Iterator[tuple[str, str, ast.A
         yield "negate", "", negated(node)
     if node.ast_type == ast.ASTType.SymbolicTerm and node.symbol.type == clingo.SymbolType.Number:
         for other in (node.symbol.number + 1, node.symbol.number - 1):
-            yield "shift", "", node.update(symbol=clingo.Number(other))
+            if abs(other) <= LARGEST:
+                yield "shift", "", node.update(symbol=clingo.Number(other))
     for key in node.child_keys:
         child = getattr(node, key)
         literals = key in ("body", "condition")

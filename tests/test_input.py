@@ -3,11 +3,9 @@ for which the command's reader refuses it."""
 
 import random
 import re
-from functools import cache
 
 import clingo
 import pytest
-from clingo import ast
 from conftest import ENCODINGS, ROOT, run
 from flawed import INSTANCES
 from topomap.errors import InputError
@@ -47,26 +45,6 @@ def errors(facts, program=PROGRAM):
 @pytest.mark.parametrize("facts", INSTANCES)
 def test_each_fault_has_its_error(facts):
     assert errors(facts) == sorted(f"error({error})" for error in INSTANCES[facts].split())
-
-
-@cache
-def rules():
-    found = []
-    ast.parse_string(PROGRAM, found.append)
-    return [s for s in found if s.ast_type not in (ast.ASTType.Program, ast.ASTType.Comment)]
-
-
-@pytest.mark.parametrize("number", range(len(rules())), ids=lambda n: str(rules()[n])[:40])
-def test_no_statement_can_be_removed(number):
-    """Without it a case has other errors, or clingo has something to say."""
-    rest = "\n".join(str(rule) for n, rule in enumerate(rules()) if n != number)
-    for facts, expected in INSTANCES.items():
-        try:
-            if errors(facts, rest) != sorted(f"error({error})" for error in expected.split()):
-                return
-        except AssertionError:
-            return
-    pytest.fail("nothing changes without it")
 
 
 TERMS = ("a", '"0"', "f(0)", "(0,1)", "#inf", "#sup", '""', "-a")
