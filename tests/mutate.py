@@ -45,8 +45,9 @@ greater or one less. Mutants that read the same are one. Each is asked the queri
 `tests/corpus.py` that load it, whose answers are known without the encodings. It is *killed*
 when one gives other answers (other models, shown atoms or costs, or a model twice), *refused*
 when clingo has an error or a message for it, *endless* when a query takes more than {seconds}
-seconds of the processor or {memory} MiB of memory, and has *survived* when all answers are
-right. Comments and `#include` are not mutated.
+seconds of the processor or {memory} MiB of memory. When all answers are right, it is
+*equivalent* if `tests/equivalent.toml` says why, and has *survived* if not. Comments and
+`#include` are not mutated.
 """
 COMPLEMENT = {
     ast.ComparisonOperator.Equal: ast.ComparisonOperator.NotEqual,
@@ -243,8 +244,10 @@ def report(fate: dict[Mutant, str], reasons: dict[Key, str]) -> str:
     def row(name: str, group: list[Mutant]) -> str:
         kinds = Counter(mutant.kind for mutant in group)
         ends = Counter(fate[mutant] for mutant in group)
+        proved = sum(fate[mutant] == "survived" and mutant.key in reasons for mutant in group)
+        ends["survived"] -= proved
         numbers = [*(kinds[kind] for kind in KINDS), len(group), *(ends[end] for end in FATES)]
-        return f"| {name} | {' | '.join(map(str, numbers))} |"
+        return f"| {name} | {' | '.join(map(str, [*numbers, proved]))} |"
 
     rows = [row(f"`{file}.lp`", list(group)) for file, group in groupby(fate, lambda m: m.file)]
     lines = [
@@ -254,10 +257,10 @@ def report(fate: dict[Mutant, str], reasons: dict[Key, str]) -> str:
             seconds=SECONDS,
             memory=BYTES >> 20,
         ),
-        f"| encoding | {' | '.join((*KINDS, 'all', *FATES))} |",
-        "|---|" + "--:|" * (len(KINDS) + 1 + len(FATES)),
+        f"| encoding | {' | '.join((*KINDS, 'all', *FATES, 'equivalent'))} |",
+        "|---|" + "--:|" * (len(KINDS) + len(FATES) + 2),
         *(*rows, row("all", list(fate))),
-        "\n## Survivors\n",
+        "\n## Mutants that give no wrong answer\n",
     ]
     survivors = [mutant for mutant in fate if fate[mutant] == "survived"]
     for (file, rule), group in groupby(survivors, lambda mutant: (mutant.file, mutant.rule)):

@@ -100,7 +100,7 @@ def test_all_is_well_if_only_listed_mutants_survive(mutated):
     status, out, _, report = mutated(listing(EQUIVALENT))
     assert status == 0
     assert out == "11 mutants: 1 survived, 7 killed, 2 refused, 1 endless\n"
-    assert "| `counter.lp` | 3 | 2 | 2 | 4 | 11 | 1 | 7 | 2 | 1 |" in report.splitlines()
+    assert "| `counter.lp` | 3 | 2 | 2 | 4 | 11 | 0 | 7 | 2 | 1 | 1 |" in report.splitlines()
     assert "- `remove`: R." in report.splitlines()
     assert mutated(listing(EQUIVALENT), "-j", "3")[3] == report
 
