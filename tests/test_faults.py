@@ -83,6 +83,8 @@ def strikes(name, command, folder, seeds, again):
     assert status == hits == 0
     for seed in seeds:
         draw = random.Random(f"{name} {seed}")
+        for left in folder.glob(".topomap-*"):  # of the strike before, a kill
+            left.unlink()
         target.write_text(OLD)
         after, number = draw.uniform(0, seconds), draw.choice(NUMBERS)
         status, out, err, _ = struck(call, folder, after, number)
@@ -295,11 +297,12 @@ def test_want_of_memory(tmp_path, extra, record_property):
             assert (faults[0], answer["results"][0]["count"]) == (None, 62) or faults[0]
         done = confined(limit, "count", hungry, "--timeout", "3", "--json")
         assert (done.returncode, "Traceback" in done.stderr) == (3, False), (megabytes, done)
-        answer = json.loads(done.stdout)
+        assert done.stderr == ("" if done.stdout else "topomap: out of memory\n")
+        answer = json.loads(done.stdout or '{"complete": false, "fault": null, "per_step": []}')
         assert answer["complete"] is False
-        assert answer["fault"] in ("out of memory", "timeout")
+        assert answer["fault"] in ("out of memory", "timeout", None)
         assert answer["per_step"][:3] == [1, 1, 1][: len(answer["per_step"])]
-        failed += 2 + (answer["fault"] == "out of memory")
+        failed += 2 + (answer["fault"] != "timeout")
     record_property("runs out of memory", failed)
 
 

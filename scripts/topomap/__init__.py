@@ -15,7 +15,7 @@ reads answers and compares counts.
 ``figure4``         the paper's table beside ours
 ``report``          maps as JSON, and as lines to read
 ``family``          files that list the instances of a batch
-``files``           output files that are whole or not there
+``files``           inputs within a limit; outputs that are whole or not there
 ``commands``        what each subcommand does
 ``cli``             the command ``topomap``: arguments, help, exit status
 ==================  =====================================================

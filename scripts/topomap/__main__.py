@@ -8,24 +8,33 @@ import sys
 
 
 def run() -> None:
-    status = 130
-    try:
-        if signal.getsignal(signal.SIGTERM) == signal.SIG_DFL:
-            signal.signal(signal.SIGTERM, signal.default_int_handler)
-        _open_streams()
-        from topomap.cli import main
+    both = signal.SIGINT, signal.SIGTERM
+    heeded = [number for number in both if signal.getsignal(number) != signal.SIG_IGN]
+    for number in heeded:
+        signal.signal(number, _stop)
+    _open_streams()
+    from topomap.cli import main
 
+    try:
+        for number in heeded:
+            signal.signal(number, signal.default_int_handler)
         status = main()
     except KeyboardInterrupt:
-        with contextlib.suppress(OSError):
-            print("interrupted", file=sys.stderr, flush=True)
-    for number in (signal.SIGINT, signal.SIGTERM):
+        _stop()
+    for number in both:
         signal.signal(number, signal.SIG_IGN)
     with contextlib.suppress(OSError):
         sys.stdout.flush()
     # Python would now wait for a clingo that grounds in a thread that nothing can stop, and
     # write once more to streams that cannot be written.
     os._exit(status)
+
+
+def _stop(*_: object) -> None:
+    """End at once: an exception in the midst of an import may come out as another one."""
+    with contextlib.suppress(OSError):
+        os.write(2, b"interrupted\n")
+    os._exit(130)
 
 
 def _open_streams() -> None:

@@ -16,7 +16,7 @@ from topomap.solver import OPTIMIZING, PARTS
 
 STATUS = """\
 exit status: 0 done; 1 the answer is no (the table differs, there is no map);
-2 bad input or usage; 3 partial (a limit, a time-out); 130 interrupted"""
+2 bad input or usage; 3 partial (a limit, a time-out, no memory left); 130 interrupted"""
 
 
 class Parser(argparse.ArgumentParser):

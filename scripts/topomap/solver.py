@@ -170,8 +170,11 @@ def answers(
             put(error)
 
     _prepare()
-    control = query.control(experience.facts())
     thread = threading.Thread(target=work, daemon=True)
+    try:
+        control = query.control(experience.facts())
+    except MemoryError:
+        raise Stopped(MEMORY) from None
     try:
         thread.start()
     except RuntimeError:  # there is no room for its stack
