@@ -148,6 +148,7 @@ def test_an_encoding_that_no_query_loads_is_refused(mutated, tmp_path):
     assert mutated(listing(EQUIVALENT))[2].startswith("mutate: other: no query")
 
 
+@pytest.mark.long
 def test_no_statement_can_be_removed():
     """Each, but for the listed ones, is missed by some query."""
     files = sorted(str(path.relative_to(ENCODINGS))[:-3] for path in ENCODINGS.rglob("*.lp"))
