@@ -222,7 +222,7 @@ def test_killed_batches(copy, batch, kills, record_property):
     record_property("kills of make", hits)
 
 
-@pytest.mark.parametrize("seeds", [range(1), pytest.param(range(30), marks=pytest.mark.long)])
+@pytest.mark.parametrize("seeds", [range(2), pytest.param(range(30), marks=pytest.mark.long)])
 def test_time_limits(seeds, record_property):
     """A partial answer says so, and what it holds is as in the whole one."""
     whole = json.loads(run("topomap", "count", PAPER, "--json").stdout)
