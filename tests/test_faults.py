@@ -171,7 +171,7 @@ def copy(tmp_path):
 @pytest.mark.parametrize(
     ("batch", "kills"),
     [
-        ("grid 3 {3..5} --route snake\n", 2),
+        ("grid 3 {3..5} --route snake\n", 1),
         pytest.param((ROOT / "instances/batch.txt").read_text(), 15, marks=pytest.mark.long),
     ],
 )

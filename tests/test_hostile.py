@@ -283,7 +283,14 @@ COMMANDS = [
 ]
 
 
-@pytest.mark.parametrize("command", COMMANDS, ids=lambda command: " ".join(map(str, command[:2])))
+@pytest.mark.parametrize(
+    "command",
+    [
+        *(COMMANDS[0], COMMANDS[4], COMMANDS[5]),
+        *(pytest.param(command, marks=pytest.mark.long) for command in COMMANDS),
+    ],
+    ids=lambda command: " ".join(map(str, command[:2])),
+)
 @pytest.mark.parametrize(
     ("shell", "fault"), [(">/dev/full", "no space left on device"), (">&-", "bad file descriptor")]
 )
