@@ -1,5 +1,6 @@
 """The README's commands run as written and print what it says; ``...`` stands for any text."""
 
+import json
 import os
 import re
 import subprocess
@@ -7,8 +8,10 @@ from pathlib import Path
 
 import pytest
 from conftest import BIN, ROOT
+from topomap import figure4
 
-BLOCKS = re.findall(r"^```console\n(.*?)^```", (ROOT / "README.md").read_text(), re.M | re.S)
+README = ROOT / "README.md"
+BLOCKS = re.findall(r"^```console\n(.*?)^```", README.read_text(), re.M | re.S)
 CALLS = [
     (call.partition("\n")[0], call.partition("\n")[2])
     for block in BLOCKS
@@ -36,6 +39,15 @@ def test_a_command_prints_what_the_readme_says(tmp_path, command, expected):
     )
     pattern = ".*".join(re.escape(text.strip("\n")) for text in expected.split("..."))
     assert re.fullmatch(pattern, done.stdout.strip("\n"), re.DOTALL)
+
+
+def test_the_readme_shows_the_committed_reports():
+    text = README.read_text()
+    beyond = json.loads((ROOT / "docs/beyond.json").read_text())["rows"]
+    assert f"```text\n{figure4.text(beyond)}\n```" in text
+    (total,) = re.findall(r"^\| all (.*)\|$", (ROOT / "docs/mutation.md").read_text(), re.M)
+    *_, mutants, survived, _, _, _, equivalent = (int(n) for n in re.findall(r"\d+", total))
+    assert f"| {mutants:,} mutants | {survived} survive; {equivalent} equivalent" in text
 
 
 def test_the_readme_has_commands():

@@ -4,6 +4,7 @@ import fcntl
 import json
 import os
 from collections.abc import Iterator, Mapping
+from errno import ENAMETOOLONG
 from pathlib import Path
 from typing import Any, BinaryIO
 
@@ -49,6 +50,9 @@ class Journal:
         except BlockingIOError:
             raise InputError(f"{output}: another run is writing it") from None
         except OSError as error:
+            if error.errno == ENAMETOOLONG and not resume:
+                self.path = None
+                return
             raise of_file(output, error) from None
         except ValueError:
             raise InputError(f"{output}: not the name of a file") from None
