@@ -1,7 +1,7 @@
 """topomap: exact topological map-building in answer set programming.
 
 The theory is in ``encodings/``; this package makes experiences, calls the solver,
-reads answers and compares counts.
+searches without it, reads answers, checks and compares them.
 
 ==================  =====================================================
 ``topology``        maps: gateways, links, paths, faces, genus
@@ -11,8 +11,15 @@ reads answers and compares counts.
 ``experience``      what an exploration shows; instance files
 ``generate``        one record from which name, header and facts come
 ``solver``          clingo on the encodings: enumeration, optimal maps
-``statistics``      the figures of the search tree, by horizons
+``hypothesis``      a node of the paper's search tree, entered and undone
+``search``          the tree breadth-first, depth-first, best-first: the second way
+``branching``       the paper's equation (1), node by node
+``statistics``      the figures of the search tree, by clingo and by search
 ``figure4``         the paper's table beside ours
+``beyond``          what is beyond the paper's table
+``check``           two checkers of maps: check.lp, and one by definition
+``maps``            maps that anyone made: read, and judged
+``journal``         long runs go on where they were cut
 ``report``          maps as JSON, and as lines to read
 ``family``          files that list the instances of a batch
 ``files``           inputs within a limit; outputs that are whole or not there

@@ -110,15 +110,14 @@ class TopologicalMap:
         (the SSH's boundary regions; semantics: "Boundary consistency")."""
         for path in self.paths():
             on = {place for place, _ in path}
-            right, left = (
-                {
-                    met
-                    for place, heading in path
-                    for turn in range(1, self.slots // 2)
-                    for met, _ in self.straight_on((place, (heading + side * turn) % self.slots))
-                }
-                for side in (1, -1)
-            )
+            left: set[Place] = set()
+            right: set[Place] = set()
+            for place, heading in path:
+                for other in self.stars[place]:
+                    turn = (other - heading) % self.slots
+                    if turn % (self.slots // 2):
+                        side = right if turn < self.slots // 2 else left
+                        side.update(met for met, _ in self.straight_on((place, other)))
             if left & right or on & (left | right):
                 return False
         return True
