@@ -2,13 +2,14 @@
 of the package, a slow independent search (oracle.py), and two checkers of maps."""
 
 import random
+import subprocess
 from collections import Counter
 from contextlib import contextmanager
 from dataclasses import replace
 from itertools import combinations
 
 import pytest
-from conftest import PARTS, TRIED, Truth, answers
+from conftest import BIN, ENCODINGS, PARTS, TRIED, Truth, answers
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from topomap import search, solver
@@ -223,6 +224,23 @@ def test_many(block):
         agree_on_bounds(experience, truth, 1 + number % (experience.steps + 1))
         for holds in PROPERTIES:
             holds(experience, truth)
+
+
+def test_a_case_that_fails_is_printed_as_a_file_and_commands(tmp_path):
+    """And the commands run on that file, with the answers that are compared."""
+    experience, truth = listed(random_experience(random.Random(3), 8))
+    with pytest.raises(AssertionError) as caught, case(experience, ("planar",)):
+        raise AssertionError
+    facts, clingo, topomap = caught.value.__notes__
+    (tmp_path / "case.lp").write_text(facts.partition("\n")[2])
+    number = len(truth.having("planar"))
+    (tmp_path / "encodings").symlink_to(ENCODINGS)
+    for command, line in (clingo, f"Models       : {number}"), (topomap, f"{number} consistent"):
+        program, *arguments = command.split()
+        done = subprocess.run(
+            [BIN / program, *arguments], cwd=tmp_path, capture_output=True, text=True
+        )
+        assert line in done.stdout
 
 
 def test_the_generator_makes_what_it_promises():

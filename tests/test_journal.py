@@ -140,6 +140,7 @@ def test_other_queries_and_instances_are_other_runs(tmp_path, monkeypatch, capsy
         ["solve", GRID],
         ["solve", PAPER, "--by", "search"],
         ["solve", PAPER, "--bound", "9"],
+        ["solve", PAPER, "--horizon", "0"],
         ["count", PAPER],
     ):
         assert main([*call, "-o", file, "--resume"]) == 2
@@ -171,6 +172,18 @@ def test_a_partial_answer_is_kept_and_gone_on_with(tmp_path):
     assert (len(whole["maps"]), whole["complete"]) == (1465, True)
     assert all(one in whole["maps"] for one in partial["maps"])
     assert [path.name for path in tmp_path.iterdir()] == ["maps.json"]
+
+
+def test_of_several_instances_the_first_is_gone_on_with(tmp_path):
+    """A limit cuts each of them; the journal is of the first, then."""
+    file, whole = tmp_path / "maps.json", tmp_path / "whole.json"
+    call = ["solve", PAPER, GRID, PAPER, "--json", "-o"]
+    assert main([*call, str(file), "--limit", "40"]) == 3
+    assert main([*call, str(file), "--limit", "70", "--resume"]) == 3
+    assert [r["count"] for r in json.loads(file.read_text())["results"]] == [70, 70, 70]
+    assert main([*call, str(file), "--resume"]) == 0
+    assert main([*call, str(whole)]) == 0
+    assert ordered(file) == ordered(whole)
 
 
 def test_beyond_goes_on(tmp_path, monkeypatch):

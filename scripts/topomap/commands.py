@@ -90,7 +90,7 @@ def _run(args: argparse.Namespace, *experiences: Experience) -> dict[str, Any]:
     """What a run computes: a journal goes on with no other one."""
     facts = "".join(experience.facts() for experience in experiences)
     keys = ("by", *PARTS, "optimal", "bound", "horizon")
-    asked = {key: getattr(args, key) for key in keys if getattr(args, key, None)}
+    asked = {key: getattr(args, key, None) for key in keys}
     return {"command": args.command, **asked, "facts": hashlib.sha256(facts.encode()).hexdigest()}
 
 
@@ -114,6 +114,8 @@ def solve(args: argparse.Namespace) -> int:
             statuses.append(_solve_one(args, experience, report, journal))
             if statuses[-1] == INTERRUPTED:
                 break
+            if statuses[-1] > NO:
+                journal.stop()
         complete = len(statuses) == len(inputs) and max(statuses) <= NO
         if args.json and len(inputs) > 1:
             out.write(f'], "complete": {json.dumps(complete)}}}\n')
@@ -165,8 +167,10 @@ def _found(
         parts = search.cubes(experience, query)
         done = 0
         for at in journal.recorded(len(parts)):
+            watch.tick()
             done += at is None
             if at is not None:
+                watch.found += 1
                 yield Found(tuple((place, slot) for place, slot in at), query.kind)
         for found in way(experience, query, watch, cubes=parts[done:]):
             if found is None:

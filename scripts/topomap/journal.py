@@ -27,7 +27,7 @@ class Journal:
         self, output: str | None = None, run: Mapping[str, Any] | None = None, resume: bool = False
     ):
         self.path: Path | None = None
-        self.complete = False
+        self.complete = self._stopped = False
         self._end = self._units = 0
         self._reader: BinaryIO | None = None
         head = json.dumps({"topomap": __version__, **(run or {})}) + "\n"
@@ -78,7 +78,7 @@ class Journal:
     def recorded(self, units: int) -> Iterator[Any]:
         """The values of the next so many of the units that are done, and a None after each
         unit."""
-        while units and self._reader and self._reader.tell() < self._end:
+        while units and self._reader and self._reader.tell() < self._end and not self._stopped:
             line = self._reader.readline()
             units -= line == DONE
             yield None if line == DONE else json.loads(line)
@@ -101,8 +101,12 @@ class Journal:
         self._write(DONE.decode().strip(), flush=True)
         self._units += 1
 
+    def stop(self) -> None:
+        """Note nothing more: the next unit is not the one that would be next in a whole run."""
+        self._stopped = True
+
     def _write(self, line: str, flush: bool = False) -> None:
-        if self._reader is None:
+        if self._reader is None or self._stopped:
             return
         try:
             self._file.write(line.encode() + b"\n")
