@@ -12,13 +12,14 @@ import tempfile
 import time
 from pathlib import Path
 
+from topomap.environment import grid
 from topomap.experience import read
+from topomap.generate import instance
 from topomap.search import depth_first, root
 from topomap.solver import Query, Watch
 from topomap.statistics import Tally
 
 ROOT = Path(__file__).resolve().parents[1]
-SNAKE = ROOT / "instances/grid-4x4-snake.lp"
 TASKS = [
     ("3x4, all maps", "grid-3x4-paper", (), None),
     ("3x4, planar", "grid-3x4-paper", ("planar",), None),
@@ -61,11 +62,12 @@ def ways() -> None:
 
 
 def memory(maps: int) -> None:
-    """Enumerate so many maps of 4x4 to a file; the resident memory as it grows."""
+    """Enumerate so many maps of the 5x4 snake to a file; the resident memory as it grows."""
     with tempfile.TemporaryDirectory() as folder:
-        file = Path(folder) / "maps.txt"
+        snake, file = Path(folder) / "snake.lp", Path(folder) / "maps.txt"
+        snake.write_text(instance(grid(5, 4), "snake").text())
         journal = Path(f"{file}.part")
-        call = ["solve", str(SNAKE), "--limit", str(maps), "-o", str(file)]
+        call = ["solve", str(snake), "--bound", "20", "--limit", str(maps), "-o", str(file)]
         begun = time.perf_counter()
         process = subprocess.Popen([sys.executable, "-m", "topomap", *call])
         samples = []
@@ -78,7 +80,7 @@ def memory(maps: int) -> None:
         with file.open() as lines:
             written = sum(line.startswith("map ") for line in lines)
         size = journal.stat().st_size
-    print(f"{written:,} maps of 4x4 to a file in {seconds:.0f} s; resident memory, MB:")
+    print(f"{written:,} maps of 5x4 to a file in {seconds:.0f} s; resident memory, MB:")
     tenths = [max(mb for at, mb in samples if at <= size * part / 10) for part in range(1, 11)]
     print("  " + "  ".join(f"{10 * part}%: {mb:.0f}" for part, mb in enumerate(tenths, 1)))
     if tenths[-1] > 1.25 * tenths[0]:
