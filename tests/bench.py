@@ -32,8 +32,8 @@ TASKS = [
 def ways() -> None:
     """Each task by clingo and by search: counts, ground size, conflicts, seconds."""
     print(f"{'':32}     maps    rules  choices conflicts    nodes   clingo : search")
-    for name, instance, parts, places in TASKS:
-        experience = read(ROOT / f"instances/{instance}.lp")
+    for name, file, parts, places in TASKS:
+        experience = read(ROOT / f"instances/{file}.lp")
         query = Query(frozenset(parts), places)
         begun = time.perf_counter()
         control = query.control(experience.facts())
