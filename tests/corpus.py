@@ -162,6 +162,16 @@ def check() -> Iterator[Query]:
             yield Query(("check",), experience.facts() + "".join(facts), frozenset({shown}))
 
 
+def demands() -> Iterator[Query]:
+    """Demands that are known, and others."""
+    facts = "slots(4). view(0,0). view(1,0). turn(1,0). at(0,0,0). at(1,1,0). "
+    for demand in ("planar", "closed", "travelled", "boundary", "perpendicular", "bound(2)"):
+        yield Query(("check",), f"{facts} demand({demand}).", frozenset({frozenset()}))
+    for demand in ("plannar", "bound", "bound(a)", "bound(#inf)", '"closed"', "2"):
+        shown = frozenset({f"violation({demand},1)"})
+        yield Query(("check",), f"{facts} demand({demand}).", frozenset({shown}))
+
+
 def faults() -> Iterator[Query]:
     """Instances with faults."""
     for facts, errors in INSTANCES.items():
@@ -169,7 +179,7 @@ def faults() -> Iterator[Query]:
         yield Query(("input",), facts, frozenset({shown}))
 
 
-SUITES = (theory, check, faults)
+SUITES = (theory, check, demands, faults)
 
 
 @cache
