@@ -127,6 +127,20 @@ def test_order_and_direction_do_not_matter(topomap, maps):
     assert topomap("check", GRID, maps).returncode == 0
 
 
+def test_no_maps_are_sound(topomap, maps):
+    maps.write_text("[]")
+    done = topomap("check", GRID, maps)
+    assert (done.returncode, done.stdout) == (0, "0 maps, none unsound\n")
+
+
+def test_maps_of_part_of_the_steps_are_told(topomap, maps):
+    document = json.loads(maps.read_text())
+    at = [{"at": one["at"][:10]} for one in document["maps"][:1]] + document["maps"][1:]
+    maps.write_text(json.dumps(at))
+    done = topomap("check", GRID, maps)
+    assert done.stdout == "3 maps, none unsound; 1 of part of the 16 steps\n"
+
+
 def test_other_faults_of_maps(topomap, maps, tmp_path):
     document = json.loads(maps.read_text())
     first = document["maps"][0]
@@ -150,6 +164,7 @@ def test_the_real_map_is_verified(topomap, tmp_path):
         "solve", instance, "--closed", "--truth", truth, "--json", "-o", maps
     ).returncode
     assert topomap("check", instance, maps, "--truth", truth).returncode == 0
+    assert "real: only --truth can tell" in topomap("check", instance, maps).stdout
     maps.write_text(maps.read_text().replace('"real": true', '"real": false'))
     done = topomap("check", instance, maps, "--truth", truth)
     assert (done.returncode, "real: it is the real map" in done.stdout) == (1, True)
@@ -158,7 +173,7 @@ def test_the_real_map_is_verified(topomap, tmp_path):
 @pytest.mark.parametrize(
     "text",
     [
-        *("", "[", "3", "{}", "[]", "[" * 100000, '{"maps": 1}', '{"results": 1}', '{"Call": 3}'),
+        *("", "[", "3", "{}", "[" * 100000, '{"maps": 1}', '{"results": 1}', '{"Call": 3}'),
         '[{"at": 1}]',
         '[{"at": [[0, 0]]}]',
         '[{"at": [[0, 0, "a"]]}]',

@@ -186,6 +186,23 @@ def test_of_several_instances_the_first_is_gone_on_with(tmp_path):
     assert ordered(file) == ordered(whole)
 
 
+def test_nothing_that_was_found_is_lost(tmp_path, monkeypatch, capsys):
+    """Not when a run is cut in the midst of a part, and again while it catches up."""
+    file = tmp_path / "maps.json"
+    call = ["solve", PAPER, "--json", "-o", str(file), "--resume"]
+    found = 0
+    for limit in (100, 300, 301, 500, 800):
+        assert main([*call, "--limit", str(limit)]) == 3
+        assert "the same call with --resume goes on from here" in capsys.readouterr().err
+        assert main([*call, "--timeout", "0.001"]) in (0, 3)
+        if not (tmp_path / "maps.json.part").exists():
+            break
+        before, found = found, len(json.loads(file.read_text())["maps"])
+        assert found >= limit > before
+    assert main(call) == 0
+    assert len(json.loads(file.read_text())["maps"]) == 1465
+
+
 def test_beyond_goes_on(tmp_path, monkeypatch):
     monkeypatch.setattr(beyond, "COLUMNS", [(3, 3, None, False), (2, 4, 8, True), (3, 3, 9, True)])
     whole, file = tmp_path / "whole.json", tmp_path / "file.json"

@@ -130,14 +130,18 @@ def test_best_first_finds_the_real_map_without_a_bound(topomap, tmp_path):
     answer = json.loads(done.stdout)
     assert done.returncode == 0
     assert [m["at"] for m in answer["maps"]] == [json.loads(truth.read_text())["maps"][0]["at"]]
-    assert (answer["kind"], answer["cost"], answer["proved"]) == ("best-first", [8, 16], False)
+    assert (answer["kind"], answer["cost"], answer["proved"]) == (
+        "closed, best-first",
+        [8, 16],
+        False,
+    )
     assert answer["nodes"] < sum(COLUMNS[5]["expected"]["per_step"])
 
 
 def test_best_first_says_no_where_no_map_is_closed(topomap):
     done = topomap("search", GRID, "--order", "best", "--horizon", "9")
     assert done.returncode == 1
-    assert done.stdout.startswith("0 best-first maps, ")
+    assert done.stdout.startswith("0 closed, best-first maps, ")
 
 
 def test_best_first_goes_by_the_policy():

@@ -177,6 +177,9 @@ def text(totals: dict[str, Any]) -> str:
     return "\n".join(
         [
             *lines,
+            "m: matches so far (mean); b, bp: children, planar children (sums), in the worst case",
+            "(every pending gateway fits) and as seen; start fits: nodes where the gateway left by",
+            "would fit too",
             f"f = m + 1: at {totals['f_is_m_plus_1']} of {nodes} branching nodes",
             f"worst case as equation (1) predicts: at {totals['worst_equal']} of {nodes}",
             "as seen, of those that fit (footnote 2): "
@@ -184,7 +187,8 @@ def text(totals: dict[str, Any]) -> str:
             f"largest difference {totals['largest_difference']:.3f}; "
             f"where the start fits too: at {totals['start_fits_and_equal']} "
             f"of {totals['start_fits']}",
-            f"as seen, less equation (1): at most {totals['largest_gap']:.3f}",
+            f"as seen, against equation (1) with all pending gateways: largest difference "
+            f"{totals['largest_gap']:.3f}",
             "",
         ]
     )

@@ -15,7 +15,7 @@ from topomap.experience import LARGEST
 from topomap.solver import OPTIMIZING, PARTS
 
 STATUS = """\
-exit status: 0 done; 1 the answer is no (the table differs, there is no map);
+exit status: 0 done; 1 the answer is no (the table differs, no map, an unsound map);
 2 bad input or usage; 3 partial (a limit, a time-out, no memory left); 130 interrupted"""
 
 
@@ -333,7 +333,8 @@ def _add_branching(group: Any) -> None:
         group,
         "branching",
         commands.branching_nodes,
-        "check the paper's equation (1) at every branching node of the planar tree",
+        "check the paper's equation (1), bp/b = (pi / mean p) / (m + 1), at every branching node "
+        "of the planar tree",
         "  topomap branching instances/grid-4x4-snake.lp --bound 16",
     )
     command.add_argument("instance", metavar="INSTANCE")

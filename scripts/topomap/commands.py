@@ -20,9 +20,11 @@ from topomap.files import output, text
 from topomap.generate import Instance, instance
 from topomap.journal import Journal
 from topomap.report import Report
-from topomap.solver import INTERRUPT, PARTS, Found, Query, Stopped, Watch, best
+from topomap.solver import INTERRUPT, PARTS, Cube, Found, Query, Stopped, Watch, best
 from topomap.statistics import KEYS, Tally, tree
 from topomap.topology import TopologicalMap
+
+BEST_FIRST = "closed, best-first"
 
 
 def generate(args: argparse.Namespace) -> int:
@@ -103,7 +105,7 @@ def solve(args: argparse.Namespace) -> int:
         inputs.append((path, experience, truth))
     run = _run(args, *(experience for _, experience, _ in inputs))
     statuses = []
-    with Journal(args.output, run, args.resume) as journal, output(args.output) as out:
+    with Journal(args.output, run, args.resume, True) as journal, output(args.output) as out:
         if args.json and len(inputs) > 1:
             out.write('{"results": [\n')
         for number, (path, experience, truth) in enumerate(inputs):
@@ -164,18 +166,26 @@ def _found(
     elif query.optimizes or not journal.kept:
         yield from filter(None, way(experience, query, watch))
     else:
-        parts = search.cubes(experience, query)
+        parts = search.cubes(experience, query, 4 * 64)
         done = 0
-        for at in journal.recorded(len(parts)):
+        known: set[Cube] = set()  # the maps of the part that was cut
+        watch.rest()
+        for value in journal.recorded(len(parts)):
             watch.tick()
-            done += at is None
-            if at is not None:
+            if value is None:
+                known.clear()
+                done += 1
+            else:
+                at = tuple((place, slot) for place, slot in value)
+                known.add(at)
                 watch.found += 1
-                yield Found(tuple((place, slot) for place, slot in at), query.kind)
+                yield Found(at, query.kind)
+        watch.go_on()
         for found in way(experience, query, watch, cubes=parts[done:]):
             if found is None:
+                known.clear()
                 journal.commit()
-            else:
+            elif found.at not in known:
                 journal.add(found.at)
                 yield found
 
@@ -202,7 +212,7 @@ def check(args: argparse.Namespace) -> int:
         name = Path(args.instance).name
         documents = [d for d in documents if Path(str(d.claims.get("instance"))).name == name]
     number = sum(len(document.maps) for document in documents)
-    if not number:
+    if not documents:
         raise InputError(f"{args.maps}: no maps of {args.instance} in it")
     truth = _truth(args.truth, experience, None) if args.truth else None
     demands = [part for part in maps.DEMANDS if getattr(args, part)]
@@ -219,12 +229,14 @@ def check(args: argparse.Namespace) -> int:
         except Stopped as stopped:
             fault = f"{stopped}"
         unsound = [verdict for verdict in checked if not verdict.sound]
+        short = sum(verdict.short for verdict in checked)
         if args.json:
             answer = {
                 "instance": args.instance,
                 "demands": demands,
                 "unsound": [dataclasses.asdict(verdict) for verdict in unsound],
                 "checked": len(checked),
+                "short": short,
                 "maps": number,
                 "complete": not fault,
                 "fault": fault,
@@ -235,8 +247,11 @@ def check(args: argparse.Namespace) -> int:
                 broken = [f"violation({rule},{step})" for rule, step in verdict.violations]
                 out.write(f"{verdict.where}: {'; '.join(broken + verdict.faults)}\n")
             noun = "map" if number == 1 else "maps"
-            line = f"{number} {noun}, {len(unsound) or 'none'} unsound"
-            out.write(line + (f"; partial: {fault} after {len(checked)}\n" if fault else "\n"))
+            line = f"{len(checked)} of {number} {noun} checked" if fault else f"{number} {noun}"
+            line += f", {len(unsound) or 'none'} unsound"
+            if short:
+                line += f"; {short} of part of the {experience.steps} steps"
+            out.write(line + (f"; partial: {fault}\n" if fault else "\n"))
     return _status(fault, not unsound)
 
 
@@ -276,8 +291,12 @@ def search_tree(args: argparse.Namespace) -> int:
                     watch.found = tally.per_step[-1]
         except Stopped as stopped:
             fault = str(stopped)
+        figures = tally.figures()
         note = "; the figures are of the nodes searched until then"
-        _write_figures(args, out, tally.figures(), fault, note)
+        if fault and args.order == "breadth":  # node is in the midst of its level
+            figures = dict.fromkeys(KEYS) | {"per_step": tally.per_step[: node.steps]}
+            note = ""
+        _write_figures(args, out, figures, fault, note)
     return _status(fault, bool(tally.per_step[-1]))
 
 
@@ -286,12 +305,12 @@ def _best_first(args: argparse.Namespace, experience: Experience, query: Query) 
     fault = None
     nodes = 0
     with output(args.output) as out, Watch(args.timeout) as watch:
-        report = Report(out, args.instance, experience, query, "best-first", None, args.json)
+        report = Report(out, args.instance, experience, query, BEST_FIRST, None, args.json)
         try:
             for node in search.best_first(search.root(experience, query), watch):
                 nodes += 1
                 if node.steps == node.experience.steps and node.closed():
-                    report.add(Found(node.dstates, "best-first", node.cost, proved=False))
+                    report.add(Found(node.dstates, BEST_FIRST, node.cost, proved=False))
                     break
         except Stopped as stopped:
             fault = str(stopped)

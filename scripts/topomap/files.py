@@ -22,7 +22,7 @@ _TEMPORARY = ".topomap-"
 def data(path: str | Path, most: int = MOST_BYTES) -> bytes:
     """The bytes of a file, ``most`` at most. Raises InputError where it cannot be read."""
     try:
-        with Path(path).open("rb") as file:
+        with Path("/dev/stdin" if str(path) == "-" else path).open("rb") as file:
             content = b"".join(islice(iter(lambda: file.read(_CHUNK), b""), most // _CHUNK + 1))
     except OSError as error:
         raise of_file(path, error) from None

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any, BinaryIO
 
 from topomap import __version__
-from topomap.errors import InputError, of_file
+from topomap.errors import InputError, of_file, say
 
 DONE = b"done\n"
 
@@ -18,16 +18,22 @@ class Journal:
     """A run in units: values are written, and a unit is done when it is committed.
 
     ``run`` says what is computed. With ``resume`` the journal of an earlier, equal run is
-    gone on with after its last unit that was done. Without an output file, or if that is no
+    gone on with after its last unit that was done; with ``cut_too`` the values of the unit
+    that was cut are kept as well. Without an output file, or if that is no
     regular one, nothing is kept. Raises InputError where the file cannot be had, another
     process has it, or it is of another run.
     """
 
     def __init__(
-        self, output: str | None = None, run: Mapping[str, Any] | None = None, resume: bool = False
+        self,
+        output: str | None = None,
+        run: Mapping[str, Any] | None = None,
+        resume: bool = False,
+        cut_too: bool = False,
     ):
         self.path: Path | None = None
         self.complete = self._stopped = False
+        self._cut_too, self._output = cut_too, output
         self._end = self._units = 0
         self._reader: BinaryIO | None = None
         head = json.dumps({"topomap": __version__, **(run or {})}) + "\n"
@@ -39,6 +45,8 @@ class Journal:
             self.path = Path(os.path.realpath(output) + ".part")
             self._file = self.path.open("a+b")
             fcntl.flock(self._file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            if not resume and self.path.stat().st_size:
+                say(f"{output}: begun anew; with --resume it would have gone on")
             if resume and self.path.stat().st_size:
                 self._read(head)
             self._file.truncate(self._end)
@@ -66,8 +74,8 @@ class Journal:
             raise InputError(f"{self.path}: of another run; without --resume it is begun anew")
         self._end = self._file.tell()
         for line in self._file:
-            if line == DONE:
-                self._units += 1
+            self._units += line == DONE
+            if line == DONE or (self._cut_too and line.endswith(b"\n")):
                 self._end = self._file.tell()
 
     @property
@@ -77,7 +85,7 @@ class Journal:
 
     def recorded(self, units: int) -> Iterator[Any]:
         """The values of the next so many of the units that are done, and a None after each
-        unit."""
+        unit; then those of the unit that was cut, if there was one."""
         while units and self._reader and self._reader.tell() < self._end and not self._stopped:
             line = self._reader.readline()
             units -= line == DONE
@@ -127,3 +135,5 @@ class Journal:
         self._reader.close()
         if not self._units or (self.complete and kind is None):
             self.path.unlink()
+        else:
+            say(f"{self._output}: partial; the same call with --resume goes on from here")

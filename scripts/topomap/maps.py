@@ -40,7 +40,7 @@ class Document:
             yield f"bound({self.claims['bound']})"
         if self.claims.get("kind") in ("optimal", "best so far"):
             yield "boundary"
-        if self.claims.get("kind") == "optimal":
+        if self.claims.get("kind") in ("optimal", "closed, best-first"):
             yield "closed"
 
 
@@ -49,7 +49,9 @@ def read(path: str) -> list[Document]:
     try:
         data = json.loads(text(path, MOST_BYTES))
     except (ValueError, RecursionError):
-        raise InputError(f"{path}: not a JSON text") from None
+        raise InputError(
+            f"{path}: not a JSON text, as topomap solve --json and clingo --outf=2 write it"
+        ) from None
     if isinstance(data, dict) and "Call" in data:
         return [_of_clingo(path, data)]
     documents = data["results"] if isinstance(data, dict) and "results" in data else [data]
@@ -115,6 +117,7 @@ class Verdict:
     where: str
     violations: list[Violation]
     faults: list[str]
+    short: bool = False  # the map is of part of the steps
 
     @property
     def sound(self) -> bool:
@@ -147,10 +150,13 @@ def verdicts(
             if numbers.setdefault(at, number) != number:
                 found.append(f"the same as map {numbers[at]}")
             violations = sorted(rules | definition, key=lambda violation: violation[::-1])
-            yield Verdict(f"{document.where}: map {number}", violations, found)
-        if (said := document.claims.get("count", len(document.maps))) != len(document.maps):
-            fault = f"count is {said}, there are {len(document.maps)} maps"
-            yield Verdict(document.where, [], [fault])
+            said = document.claims.get("count", len(document.maps))
+            if number == 1 and said != len(document.maps):
+                found.append(f"count is {said}, there are {len(document.maps)} maps")
+            if truth is None and "real" in entry:
+                found.append("real: only --truth can tell")
+            short = len(at) <= experience.steps
+            yield Verdict(f"{document.where}: map {number}", violations, found, short)
 
 
 def faults(
@@ -181,7 +187,11 @@ def faults(
 def _cost(grown: Grown, claims: dict[str, Any]) -> list[int]:
     """What was minimised, most important first."""
     parts = claims.get("parts", ())
-    minimal = "minimal" in parts or claims.get("kind") in ("optimal", "best so far", "best-first")
+    minimal = "minimal" in parts or claims.get("kind") in (
+        "optimal",
+        "best so far",
+        "closed, best-first",
+    )
     genus = [grown.genus()] if "genus" in parts else []
     return genus + ([len(grown.paths()), len(grown.stars)] if minimal else [])
 

@@ -105,6 +105,15 @@ class Watch:
         """Say what is being done."""
         self.bar.set_description_str(text, refresh=False)
 
+    def rest(self) -> None:
+        """Let the time limit wait."""
+        self.left = None if self.deadline is None else self.deadline - time.monotonic()
+        self.deadline = None
+
+    def go_on(self) -> None:
+        """Let it run again."""
+        self.deadline = None if self.left is None else time.monotonic() + self.left
+
     def tick(self) -> None:
         """Show progress; raises Stopped past the time limit and after a signal."""
         with contextlib.suppress(OSError):  # stderr cannot be written
