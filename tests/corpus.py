@@ -11,7 +11,7 @@ from functools import cache
 
 from conftest import PARTS, THEORY, Truth
 from flawed import DEMANDS, INSTANCES, by_hand, drawn
-from topomap.check import by_definition, by_rules
+from topomap.check import by_definition
 from topomap.experience import Experience
 from worlds import random_experience
 
@@ -150,11 +150,13 @@ def hypotheses(facts: str, arguments: tuple[str, ...], truth: Truth) -> Iterator
 
 def check() -> Iterator[Query]:
     """Maps, sound and with errors, with the violations that are there by definition. Of a map
-    with two links at a gateway the rules of paths are not defined, so some are left out."""
-    for experience, at in [*by_hand(), *drawn(120)]:
+    with two links at a gateway paths are not defined, so of the random ones these are left
+    out."""
+    hand = list(by_hand())
+    for number, (experience, at) in enumerate([*hand, *drawn(120)]):
         for demands in (DEMANDS, ()):
             violations = by_definition(experience, at, demands)
-            if "schema" in dict(violations) and violations != by_rules(experience, at, demands):
+            if "schema" in dict(violations) and number >= len(hand):
                 continue
             facts = [f"at({step},{place},{slot})." for step, place, slot in at]
             facts += [f"demand({demand})." for demand in demands]

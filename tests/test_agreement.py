@@ -15,6 +15,7 @@ from hypothesis import strategies as st
 from topomap import search, solver
 from topomap.check import by_definition, by_rules
 from topomap.solver import Query, Watch
+from topomap.statistics import Tally
 from worlds import random_experience
 
 QUICK = settings(
@@ -117,12 +118,34 @@ def agree_on_the_tree(experience, truth):
         for order in search.breadth_first, search.depth_first:
             counted = Counter(node.steps for node in order(root))
             assert [counted[step] for step in range(len(levels))] == [*map(len, levels)]
+        tally = Tally(experience.steps)
+        for node in search.depth_first(root):
+            tally.add(node)
+        figures = {
+            "closed": truth.having("travelled", *planar),
+            "closed_text": truth.having("closed", *planar),
+            "perpendicular": truth.having("closed", "perpendicular", *planar),
+        }
+        assert {key: getattr(tally, key) for key in figures} == {
+            key: len(found) for key, found in figures.items()
+        }
+        assert planar or tally.optimal == len(truth.best(closed=True))
+        assert tally.maps == 1 + sum(
+            len(at) > 1 and len(set(links(experience, at))) > len(set(links(experience, at[:-1])))
+            for level in levels
+            for at in level
+        )
         for step, level in enumerate(levels):
             with case(experience.cut(step), planar):
                 facts = experience.facts()
                 assert answers(planar, facts, "-c", f"horizon={step}") == set(level)
                 assert searched(experience, *planar, horizon=step) == set(level)
                 assert {at[:step] for at in level} <= set(levels[step - 1]) or not step
+
+
+def links(experience, at):
+    """The ends of the links of a hypothesis."""
+    return [(step, end) for step, end in experience.map_of(at).links.items()]
 
 
 def agree_with_the_checkers(experience, truth, most=20):

@@ -15,6 +15,7 @@ from topomap.topology import Gateway
 
 At = Sequence[tuple[int, int, int]]  # at(T,P,S)
 Violation = tuple[str, int]
+PATH_RULES = {"path_twice", "path_circular"}
 STEP_RULES = {"exactly_one", "naming", "gateway", "view", "landmark", "schema"}
 
 
@@ -66,7 +67,8 @@ def by_definition(experience: Experience, at: At, demands: Sequence[str] = ()) -
     for rule in ("path_twice", "path_circular", *demands):
         name, _, number = rule.rstrip(")").partition("(")
         broken, limit = BROKEN[name], int(number or 0)
-        if not broken(whole, limit):
+        axiom = not PATH_RULES & {rule for rule, _ in found}
+        if not (axiom or name not in ("boundary", "perpendicular")) or not broken(whole, limit):
             continue
         step = 0 if name not in ("closed", "travelled") else last
         while not broken(Grown(experience, stands, step), limit):
@@ -115,16 +117,15 @@ class Grown:
 
     def paths(self) -> list[list[Gateway]]:
         """Each path that is not circular, as its places with the slot of its heading."""
-        paths = []
+        paths: set[tuple[Gateway, ...]] = set()
         for place, star in self.stars.items():
             for slot in star:
                 for start in (place, slot), self.opposite((place, slot)):
                     if self.opposite(start) not in self.links:
                         path = [start, *map(self.opposite, self.ahead.get(start, []))]
                         back = [self.opposite(heading) for heading in reversed(path)]
-                        if min(path, back) not in paths:
-                            paths.append(min(path, back))
-        return paths
+                        paths.add(tuple(min(path, back)))
+        return [list(path) for path in sorted(paths)]
 
     def path_twice(self, _: int) -> bool:
         return any(

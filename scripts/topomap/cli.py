@@ -353,7 +353,7 @@ def _add_table(group: Any) -> None:
         "--jobs",
         type=_number(int, 1),
         metavar="N",
-        help="processes (default: one a processor)",
+        help="columns, or with --beyond processes, at a time (default: one a processor)",
     )
     command.add_argument("--json", action="store_true", help="print JSON instead of the table")
     command.add_argument(

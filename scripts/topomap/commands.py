@@ -90,10 +90,12 @@ def _query(args: argparse.Namespace) -> Query:
 
 def _run(args: argparse.Namespace, *experiences: Experience) -> dict[str, Any]:
     """What a run computes: a journal goes on with no other one."""
-    facts = "".join(experience.facts() for experience in experiences)
+    texts = [experience.facts() for experience in experiences]
+    texts += [path.read_text() for path in sorted(solver.ENCODINGS.rglob("*.lp"))]
     keys = ("by", *PARTS, "optimal", "bound", "horizon")
     asked = {key: getattr(args, key, None) for key in keys}
-    return {"command": args.command, **asked, "facts": hashlib.sha256(facts.encode()).hexdigest()}
+    digest = hashlib.sha256("".join(texts).encode()).hexdigest()
+    return {"command": args.command, **asked, "facts and encodings": digest}
 
 
 def solve(args: argparse.Namespace) -> int:
@@ -181,6 +183,8 @@ def _found(
                 watch.found += 1
                 yield Found(at, query.kind)
         watch.go_on()
+        if args.by == "clingo":
+            solver.demand_level(experience, query, watch, parts)
         for found in way(experience, query, watch, cubes=parts[done:]):
             if found is None:
                 known.clear()
@@ -225,7 +229,8 @@ def check(args: argparse.Namespace) -> int:
                 for verdict in maps.verdicts(experience, documents, demands, truth):
                     checked.append(verdict)
                     watch.found += 1
-                    watch.tick()
+                    if len(checked) < number:
+                        watch.tick()
         except Stopped as stopped:
             fault = f"{stopped}"
         unsound = [verdict for verdict in checked if not verdict.sound]
@@ -377,7 +382,9 @@ def table(args: argparse.Namespace) -> int:
     with output(path, parents=True) as file, contextlib.ExitStack() as stack:
         if args.beyond:
             columns = len(beyond.COLUMNS)
-            journal = stack.enter_context(Journal(path, {"command": name}, args.resume))
+            journal = stack.enter_context(
+                Journal(path, {"command": name, "columns": beyond.COLUMNS}, args.resume)
+            )
             watch = stack.enter_context(Watch())
             counted = beyond.rows(jobs, watch, journal)
         else:

@@ -79,7 +79,9 @@ def output(path: str | None, parents: bool = False) -> Iterator[IO[str]]:
     except OSError as error:
         name = "standard output" if path is None else path or "an empty name"
         raise of_file(name, error) from None
-    except ValueError:
+    except ValueError as error:
+        if "null byte" not in str(error):
+            raise
         raise InputError(f"{path}: not the name of a file") from None
 
 

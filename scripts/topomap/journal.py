@@ -3,6 +3,7 @@
 import fcntl
 import json
 import os
+import zlib
 from collections.abc import Iterator, Mapping
 from errno import ENAMETOOLONG
 from pathlib import Path
@@ -11,7 +12,8 @@ from typing import Any, BinaryIO
 from topomap import __version__
 from topomap.errors import InputError, of_file, say
 
-DONE = b"done\n"
+HEAD = b'{"topomap": '
+DONE = b"done "
 
 
 class Journal:
@@ -34,7 +36,7 @@ class Journal:
         self.path: Path | None = None
         self.complete = self._stopped = False
         self._cut_too, self._output = cut_too, output
-        self._end = self._units = 0
+        self._end = self._units = self._sum = 0
         self._reader: BinaryIO | None = None
         head = json.dumps({"topomap": __version__, **(run or {})}) + "\n"
         if output is None or (Path(output).exists() and not Path(output).is_file()):
@@ -43,12 +45,17 @@ class Journal:
             return
         try:
             self.path = Path(os.path.realpath(output) + ".part")
-            self._file = self.path.open("a+b")
+            flags = os.O_RDWR | os.O_CREAT | os.O_APPEND | os.O_NOFOLLOW | os.O_NONBLOCK
+            self._file = os.fdopen(os.open(self.path, flags, 0o666), "a+b")
             fcntl.flock(self._file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-            if not resume and self.path.stat().st_size:
-                say(f"{output}: begun anew; with --resume it would have gone on")
-            if resume and self.path.stat().st_size:
-                self._read(head)
+            if self.path.stat().st_size:
+                self._file.seek(0)
+                if self._file.read(len(HEAD)) != HEAD[: self.path.stat().st_size]:
+                    raise InputError(f"{self.path}: no journal of this program; it is in the way")
+                if resume:
+                    self._read(head.encode())
+                else:
+                    say(f"{output}: begun anew; with --resume it would have gone on")
             self._file.truncate(self._end)
             if not self._end:
                 self._file.write(head.encode())
@@ -56,27 +63,42 @@ class Journal:
             self._reader = self.path.open("rb")
             self._reader.readline()
         except BlockingIOError:
-            raise InputError(f"{output}: another run is writing it") from None
+            raise InputError(f"{self.path}: another run is writing it") from None
         except OSError as error:
             if error.errno == ENAMETOOLONG and not resume:
                 self.path = None
                 return
-            raise of_file(output, error) from None
+            raise of_file(self.path, error) from None
         except ValueError:
             raise InputError(f"{output}: not the name of a file") from None
 
-    def _read(self, head: str) -> None:
+    def _read(self, head: bytes) -> None:
+        """Find the end of what counts. A unit ends with its number and a checksum."""
         self._file.seek(0)
         first = self._file.readline()
         if not first.endswith(b"\n"):
             return
-        if first != head.encode():
+        if first != head:
             raise InputError(f"{self.path}: of another run; without --resume it is begun anew")
         self._end = self._file.tell()
         for line in self._file:
-            self._units += line == DONE
-            if line == DONE or (self._cut_too and line.endswith(b"\n")):
+            if not line.endswith(b"\n"):
+                return
+            if line.startswith(DONE):
+                if line != self._done():
+                    fault = f"damaged after unit {self._units}; without --resume it is begun anew"
+                    raise InputError(f"{self.path}: {fault}")
+                self._units += 1
+                self._sum = 0
+            else:
+                self._sum = zlib.crc32(line, self._sum)
+            if self._cut_too or line.startswith(DONE):
                 self._end = self._file.tell()
+        if not self._cut_too:
+            self._sum = 0
+
+    def _done(self) -> bytes:
+        return DONE + b"%d %08x\n" % (self._units + 1, self._sum)
 
     @property
     def kept(self) -> bool:
@@ -88,8 +110,9 @@ class Journal:
         unit; then those of the unit that was cut, if there was one."""
         while units and self._reader and self._reader.tell() < self._end and not self._stopped:
             line = self._reader.readline()
-            units -= line == DONE
-            yield None if line == DONE else json.loads(line)
+            done = line.startswith(DONE)
+            units -= done
+            yield None if done else json.loads(line)
 
     def known(self, units: int) -> list[Any]:
         """The same of units of one value each."""
@@ -102,22 +125,25 @@ class Journal:
 
     def add(self, value: Any) -> None:
         """Note a value of the unit that is being worked on."""
-        self._write(json.dumps(value))
+        line = json.dumps(value).encode() + b"\n"
+        self._sum = zlib.crc32(line, self._sum)
+        self._write(line)
 
     def commit(self) -> None:
         """Note that the unit is done."""
-        self._write(DONE.decode().strip(), flush=True)
+        self._write(self._done(), flush=True)
         self._units += 1
+        self._sum = 0
 
     def stop(self) -> None:
         """Note nothing more: the next unit is not the one that would be next in a whole run."""
         self._stopped = True
 
-    def _write(self, line: str, flush: bool = False) -> None:
+    def _write(self, line: bytes, flush: bool = False) -> None:
         if self._reader is None or self._stopped:
             return
         try:
-            self._file.write(line.encode() + b"\n")
+            self._file.write(line)
             if flush:
                 self._file.flush()
         except OSError as error:
@@ -131,9 +157,9 @@ class Journal:
         nothing."""
         if self._reader is None or self.path is None:
             return
-        self._file.close()
-        self._reader.close()
         if not self._units or (self.complete and kind is None):
             self.path.unlink()
         else:
             say(f"{self._output}: partial; the same call with --resume goes on from here")
+        self._file.close()
+        self._reader.close()

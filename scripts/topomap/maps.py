@@ -14,6 +14,7 @@ from topomap.check import STEP_RULES, At, Grown, Violation, by_definition, by_ru
 from topomap.errors import InputError
 from topomap.experience import LARGEST, Experience
 from topomap.files import text
+from topomap.solver import PARTS
 from topomap.topology import Gateway, TopologicalMap
 
 MOST_BYTES = 2**32
@@ -72,9 +73,11 @@ def _document(where: str, data: Any) -> Document:
     if not isinstance(data, dict) or not isinstance(data.get("maps"), list):
         raise InputError(f"{where}: no maps in it")
     claims = {key: value for key, value in data.items() if key != "maps"}
-    bound, parts = claims.get("bound"), claims.get("parts", [])
-    if not isinstance(parts, list) or not (bound is None or _is_number(bound)):
-        raise InputError(f"{where}: parts is no list, or bound no number")
+    for key, value in claims.items():
+        if key not in CLAIMS:
+            raise InputError(f"{where}: {key}: no such key")
+        if not CLAIMS[key](value):
+            raise InputError(f"{where}: {key}: not what topomap solve --json writes there")
     for number, entry in enumerate(data["maps"], 1):
         if not isinstance(entry, dict) or not _is_at(entry.get("at")):
             raise InputError(f"{where}: map {number}: at is not a list [[T,P,S], ...] of numbers")
@@ -83,6 +86,38 @@ def _document(where: str, data: Any) -> Document:
 
 def _is_number(value: object) -> bool:
     return isinstance(value, int) and not isinstance(value, bool) and abs(value) <= LARGEST
+
+
+def _is_list_of(kind: Callable[[Any], bool]) -> Callable[[Any], bool]:
+    return lambda value: isinstance(value, list) and all(map(kind, value))
+
+
+def _is_number_or_none(value: object) -> bool:
+    return value is None or _is_number(value)
+
+
+def _is_text(value: object) -> bool:
+    return value is None or isinstance(value, str)
+
+
+def _is_truth(value: object) -> bool:
+    return isinstance(value, bool)
+
+
+CLAIMS: dict[str, Callable[[Any], bool]] = {
+    "instance": _is_text,
+    "parts": _is_list_of(lambda part: part in PARTS),
+    "bound": _is_number_or_none,
+    "horizon": _is_number_or_none,
+    "optimal": _is_truth,
+    "kind": _is_text,
+    "count": _is_number,
+    "cost": _is_list_of(_is_number),
+    "proved": _is_truth,
+    "nodes": _is_number,
+    "complete": _is_truth,
+    "fault": _is_text,
+}
 
 
 def _is_at(at: object) -> bool:
@@ -178,7 +213,9 @@ def faults(
             yield f"{key}: not what at says"
     claims = document.claims
     last = claims.get("horizon")
-    if "horizon" in claims and grown.step != min(experience.steps, last or experience.steps):
+    if "horizon" in claims and grown.step != (
+        experience.steps if last is None else min(last, experience.steps)
+    ):
         yield f"horizon: at ends after step {grown.step}"
     if "cost" in claims and claims["cost"] != _cost(grown, claims):
         yield f"cost: it is {_cost(grown, claims)}"
@@ -234,7 +271,7 @@ KEYS: dict[str, Callable[[Grown, Experience, Any], bool]] = {
     "links": _links,
     "paths": _paths,
     "faces": _faces,
-    "genus": lambda grown, _, said: bool(grown.genus() == said),
+    "genus": lambda grown, _, said: _is_number(said) and grown.genus() == said,
     "pending": lambda grown, _, said: sorted(map(_gateway, said)) == sorted(grown.pending()),
     "dstate": lambda grown, _, said: _gateway(said) == grown.dstate,
 }

@@ -209,6 +209,18 @@ def answers(
         thread.join(timeout=0.5)
 
 
+def demand_level(experience: Experience, query: Query, watch: Watch, cubes: Sequence[Cube]) -> None:
+    """Demand that these are the hypotheses that clingo has after so many steps, so that no
+    answer depends on how the search has parted the tree."""
+    pruning = query.parts & {"planar", "perpendicular"}
+    level = Query(frozenset(pruning), query.places, len(cubes[0]) - 1)
+    known = watch.found
+    found = [found.at for found in hypotheses(experience, level, watch) if found]
+    if sorted(found) != sorted(cubes):
+        raise RuntimeError(f"clingo and the search differ after step {level.horizon}")
+    watch.found = known
+
+
 def _assumed(cube: Cube) -> list[tuple[clingo.Symbol, bool]]:
     return [
         (clingo.Function("at", [clingo.Number(number) for number in (step, *dstate)]), True)

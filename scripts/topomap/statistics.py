@@ -11,7 +11,7 @@ from topomap.experience import Experience
 from topomap.hypothesis import Hypothesis
 from topomap.journal import Journal
 from topomap.search import breadth_first, cubes, depth_first, root
-from topomap.solver import Cube, Query, Watch, count
+from topomap.solver import Cube, Query, Watch, count, demand_level
 
 KEYS = ("nodes", "maps", "final", "closed", "closed_text", "optimal", "perpendicular")
 FINAL = {
@@ -48,6 +48,7 @@ def tree(
     result.update(dict.fromkeys(KEYS), per_step=[])
     whole: list[Cube] = [()]
     parts = cubes(experience, query)
+    demand_level(experience, query, watch, parts)
     last = experience.steps if query.horizon is None else min(query.horizon, experience.steps)
     nodes = maps = 0
     for step in range(last + 1):
