@@ -45,6 +45,8 @@ def test_the_readme_shows_the_committed_reports():
     text = README.read_text()
     beyond = json.loads((ROOT / "docs/beyond.json").read_text())["rows"]
     assert f"```text\n{figure4.text(beyond)}\n```" in text
+    assert [row["environment"] for row in beyond if not row["clingo"]] == ["5x5"]
+    assert not any(map(figure4.differences, beyond))
     (total,) = re.findall(r"^\| all (.*)\|$", (ROOT / "docs/mutation.md").read_text(), re.M)
     *_, mutants, survived, _, _, _, equivalent = (int(n) for n in re.findall(r"\d+", total))
     assert f"| {mutants:,} mutants | {survived} survive; {equivalent} equivalent" in text

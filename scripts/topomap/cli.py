@@ -288,7 +288,8 @@ def _add_check(group: Any) -> None:
         group,
         "check",
         commands.check,
-        "check maps that anyone made, by encodings/check.lp and by a second checker",
+        "check maps that anyone made, by encodings/check.lp and by a second checker "
+        "(a time limit ends it between two maps)",
         """\
   topomap solve instances/grid-3x3-snake.lp --planar --json -o maps.json
   topomap check instances/grid-3x3-snake.lp maps.json --planar""",

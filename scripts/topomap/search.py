@@ -108,6 +108,7 @@ def hypotheses(
     best: list[Found] = []
     for cube in cubes or [((0, 0),)]:
         node.goto(cube)
+        watch.tick()
         for _ in depth_first(node, watch):
             if node.steps < node.experience.steps:
                 continue
