@@ -2,6 +2,7 @@
 
 import json
 import shutil
+import signal
 import subprocess
 import sys
 from collections import Counter
@@ -18,6 +19,8 @@ PARTS = ("planar", "euler", "closed", "travelled", "boundary", "perpendicular")
 COLUMNS = json.loads((ROOT / "scripts/topomap/figure4.json").read_text())["columns"]
 SHARED = ROOT.parent / "shared" / "maps"
 BIN = Path(sys.executable).parent
+# Under nohup, or in the background of a shell, SIGINT is ignored, and by all that is started.
+signal.signal(signal.SIGINT, signal.default_int_handler)
 TRIED = Counter()  # what was tried how often, for the last lines of a test run
 
 
