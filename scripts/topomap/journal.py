@@ -159,7 +159,7 @@ class Journal:
             return
         if not self._units or (self.complete and kind is None):
             self.path.unlink()
-        else:
+        elif kind is None:
             say(f"{self._output}: partial; the same call with --resume goes on from here")
         self._file.close()
         self._reader.close()
