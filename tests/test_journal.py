@@ -247,7 +247,7 @@ def test_clingo_may_not_finish_beyond(monkeypatch):
 
 
 @pytest.mark.long
-@pytest.mark.parametrize("block", range(5))
+@pytest.mark.parametrize("block", range(2))
 def test_killed_again_and_again(tmp_path, block):
     """kill -9, at random moments, until a run comes to its end."""
     draw = random.Random(f"killed {block}")
