@@ -4,6 +4,7 @@ import json
 import random
 import re
 import subprocess
+import time
 
 import pytest
 from conftest import BIN, ROOT, TRIED, run
@@ -249,7 +250,8 @@ def test_clingo_may_not_finish_beyond(monkeypatch):
 @pytest.mark.long
 @pytest.mark.parametrize("block", range(2))
 def test_killed_again_and_again(tmp_path, block):
-    """kill -9, at random moments, until a run comes to its end."""
+    """kill -9, at random moments, until a run comes to its end: each has the time to read what
+    was done, and some more."""
     draw = random.Random(f"killed {block}")
     calls = [
         ["count", SNAKE, "--bound", "16"],
@@ -258,16 +260,19 @@ def test_killed_again_and_again(tmp_path, block):
     ]
     for call in calls:
         whole, file = tmp_path / "whole", tmp_path / "file"
+        begun = time.monotonic()
         assert run("topomap", *call, "-o", whole).returncode == 0
-        for _ in range(100):
+        took = time.monotonic() - begun
+        status = None
+        while status is None:
             process = subprocess.Popen([BIN / "topomap", *call, "-o", file, "--resume"])
             try:
-                assert process.wait(draw.uniform(0.3, 3)) == 0
-                break
+                status = process.wait(draw.uniform(0.1, 1.2) * took)
             except subprocess.TimeoutExpired:
                 process.kill()
                 process.wait()
                 TRIED["kills of long runs, resumed"] += 1
+        assert status == 0
         assert ordered(file) == ordered(whole)
         for left in tmp_path.iterdir():
             left.unlink()

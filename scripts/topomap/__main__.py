@@ -13,6 +13,7 @@ def run() -> None:
     for number in heeded:
         signal.signal(number, _stop)
     _open_streams()
+    sys.unraisablehook = _note
     from topomap.cli import main
 
     try:
@@ -35,6 +36,12 @@ def _stop(*_: object) -> None:
     with contextlib.suppress(OSError):
         os.write(2, b"interrupted\n")
     os._exit(130)
+
+
+def _note(ignored: "sys.UnraisableHookArgs") -> None:
+    """Where memory is short, a generator cannot even be closed; the answer says so once."""
+    if not issubclass(ignored.exc_type, MemoryError):
+        sys.__unraisablehook__(ignored)
 
 
 def _open_streams() -> None:
