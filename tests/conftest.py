@@ -11,6 +11,7 @@ from pathlib import Path
 import clingo
 import pytest
 from oracle import Hypothesis, best, tree
+from topomap.solver import FORMS
 
 ROOT = Path(__file__).resolve().parents[1]
 ENCODINGS = ROOT / "encodings"
@@ -33,7 +34,7 @@ def pytest_terminal_summary(terminalreporter):
         terminalreporter.write_line(f"tried: {number:,} {what}")
 
 
-def answers(parts, facts, *arguments):
+def answers(parts, facts, *arguments, encoding="plain"):
     """The set of hypotheses, as tuples of (place, gateway) by step, that stock clingo
     finds; with a preference among the parts, the best ones. Fails on any message of
     clingo and on an answer given twice."""
@@ -42,7 +43,7 @@ def answers(parts, facts, *arguments):
     options = ["0", *arguments] + (["--opt-mode=optN"] if optimize else [])
     control = clingo.Control(options, logger=lambda _, text: messages.append(text))
     for part in ("topomap", *parts):
-        control.load(str(ENCODINGS / f"{part}.lp"))
+        control.load(str(FORMS[encoding] / f"{part}.lp"))
     control.add("base", [], facts)
     control.ground([("base", [])])
     found = []

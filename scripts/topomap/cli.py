@@ -12,7 +12,7 @@ from topomap import __version__, commands, maps, search
 from topomap.environment import MOST_STEPS
 from topomap.errors import BAD_INPUT, DONE, INTERRUPTED, PARTIAL, InputError, say
 from topomap.experience import LARGEST
-from topomap.solver import OPTIMIZING, PARTS
+from topomap.solver import FORMS, OPTIMIZING, PARTS
 
 STATUS = """\
 exit status: 0 done; 1 the answer is no (the table differs, no map, an unsound map);
@@ -259,7 +259,18 @@ def _add_solve(group: Any) -> None:
         help="which of the two ways gives the answer (default: %(default)s)",
     )
     _add_query(command, PARTS)
+    _add_encoding(command)
     _add_resume(command)
+
+
+def _add_encoding(command: Parser) -> None:
+    command.add_argument(
+        "--encoding",
+        choices=tuple(FORMS),
+        default="fast",
+        help="which rules clingo is given: encodings/fast/, or those that state the theory "
+        "(default: %(default)s)",
+    )
 
 
 def _add_resume(command: Parser) -> None:
@@ -280,6 +291,7 @@ def _add_count(group: Any) -> None:
     )
     command.add_argument("instance", metavar="INSTANCE")
     _add_query(command, [part for part in PARTS if part not in OPTIMIZING])
+    _add_encoding(command)
     _add_resume(command)
 
 

@@ -85,14 +85,15 @@ def _instance(args: argparse.Namespace) -> Instance:
 
 def _query(args: argparse.Namespace) -> Query:
     parts = frozenset(part for part in PARTS if getattr(args, part, False))
-    return Query(parts, args.bound, args.horizon)
+    encoding = getattr(args, "encoding", "fast")
+    return Query(parts, args.bound, args.horizon, encoding)
 
 
 def _run(args: argparse.Namespace, *experiences: Experience) -> dict[str, Any]:
     """What a run computes: a journal goes on with no other one."""
     texts = [experience.facts() for experience in experiences]
     texts += [path.read_text() for path in sorted(solver.ENCODINGS.rglob("*.lp"))]
-    keys = ("by", *PARTS, "optimal", "bound", "horizon")
+    keys = ("by", "encoding", *PARTS, "optimal", "bound", "horizon")
     asked = {key: getattr(args, key, None) for key in keys}
     digest = hashlib.sha256("".join(texts).encode()).hexdigest()
     return {"command": args.command, **asked, "facts and encodings": digest}

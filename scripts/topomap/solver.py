@@ -33,6 +33,7 @@ PARTS = {
     "minimal": "fewest paths, then fewest places",
 }
 OPTIMIZING = {"genus", "minimal"}
+FORMS = {"fast": ENCODINGS / "fast", "plain": ENCODINGS}
 
 Answer = TypeVar("Answer")
 Cube = tuple[DState, ...]  # the first dstates of a hypothesis
@@ -48,11 +49,12 @@ class Stopped(Exception):
 @dataclass(frozen=True)
 class Query:
     """Which hypotheses are asked for: the parts of the theory that are to hold, the
-    most places, and the last step that counts."""
+    most places, and the last step that counts; and the encoding that is to give them."""
 
     parts: frozenset[str] = frozenset()
     places: int | None = None
     horizon: int | None = None
+    encoding: str = "fast"
 
     @property
     def optimizes(self) -> bool:
@@ -80,7 +82,7 @@ class Query:
             arguments += ["-c", f"horizon={self.horizon}"]
         control = clingo.Control(arguments)
         for file in files:
-            path = ENCODINGS / f"{file}.lp"
+            path = FORMS[self.encoding] / f"{file}.lp"
             if not path.is_file():
                 raise InputError(f"{path}: not found; install with pip install -e, as make does")
             control.load(str(path))
@@ -213,7 +215,7 @@ def demand_level(experience: Experience, query: Query, watch: Watch, cubes: Sequ
     """Demand that these are the hypotheses that clingo has after so many steps, so that no
     answer depends on how the search has parted the tree."""
     pruning = query.parts & {"planar", "perpendicular"}
-    level = Query(frozenset(pruning), query.places, len(cubes[0]) - 1)
+    level = replace(query, parts=frozenset(pruning), horizon=len(cubes[0]) - 1)
     known = watch.found
     found = [found.at for found in hypotheses(experience, level, watch) if found]
     if sorted(found) != sorted(cubes):

@@ -2,7 +2,7 @@
 
 import signal
 from collections.abc import Iterator
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 from functools import partial
 from multiprocessing import TimeoutError, get_context
 from typing import Any
@@ -53,7 +53,7 @@ def tree(
     nodes = maps = 0
     for step in range(last + 1):
         watch.title(f"step {step} of {last}")
-        at_step = Query(query.parts, query.places, step)
+        at_step = replace(query, horizon=step)
         final, grown = total(at_step, whole if step < len(parts[0]) else parts)
         result["per_step"].append(final)
         nodes += final
