@@ -18,10 +18,11 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
-from bench import growth, measure, memory, report, rows
-from bench.rows import ROOT, WAYS
 from topomap.errors import BAD_INPUT, DONE, INTERRUPTED, NO, InputError, say
 from topomap.files import output
+
+from bench import growth, measure, memory, report, rows
+from bench.rows import ROOT, WAYS
 
 
 def machine() -> dict[str, str]:
@@ -81,7 +82,10 @@ def parse(argv: list[str] | None) -> argparse.Namespace:
     add("--maps", type=_number(int, 0), help="maps to a file, 0: none (default: a million)")
     add("--networks", type=Path, default=ROOT.parent / "shared/maps", help="the real maps' folder")
     add("--rows", type=Path, default=rows.ROWS, help="the tasks")
-    add("--json", default=str(ROOT / "results/bench.json"), help="the file of all figures")
+    add(
+        "--json",
+        help="the file of all figures (default: in results/, bench.json if all is measured)",
+    )
     add("--docs", type=Path, help="the report's folder (default: docs, if all is measured)")
     return parser.parse_args(argv)
 
@@ -109,7 +113,8 @@ def run(args: argparse.Namespace) -> int:
     ]
     if not chosen:
         raise InputError("no row has such a name")
-    whole = not (args.only or args.quick)
+    whole = not (args.only or args.quick) and args.rows == rows.ROWS
+    file = args.json or str(ROOT / f"results/bench{'' if whole else '-selection'}.json")
     maps = args.maps if args.maps is not None else 1_000_000 * whole
     docs = args.docs or (ROOT / "docs" if whole else None)
     with tempfile.TemporaryDirectory() as folder:
@@ -152,23 +157,23 @@ def run(args: argparse.Namespace) -> int:
             for row in measure.rows(chosen, plan, ways):
                 document["rows"].append(row)
                 document["growth"] = growth.curves(document["rows"])
-                _write(document, args.json)
+                _write(document, file)
                 print(report.short(row), flush=True)
             if maps:
                 document["memory"] = memory.profile(maps)
-                print(report._memory(document["memory"]), end="", flush=True)
+                print(report.memory(document["memory"]), end="", flush=True)
             document["complete"] = True
         except KeyboardInterrupt:
             document["fault"] = "interrupted"
         document["seconds"] = round(time.monotonic() - begun)
-        _write(document, args.json)
+        _write(document, file)
     if document["fault"]:
         print(f"partial: {document['fault']}, {len(document['rows'])} of {len(chosen)} rows")
         return INTERRUPTED
     if docs:
         growth.draw(document["growth"], docs / "figures/scaling.svg")
-        with output(str(docs / "benchmark.md"), parents=True) as file:
-            file.write(report.text(document, "figures/scaling.svg"))
+        with output(str(docs / "benchmark.md"), parents=True) as out:
+            out.write(report.text(document, "figures/scaling.svg"))
     wrong = [row for row in document["rows"] if row["verdict"].startswith("WRONG")]
     print(f"{len(chosen)} rows in {document['seconds']} s, {len(wrong) or 'none'} wrong")
     grows = document["memory"] is not None and not document["memory"]["flat"]

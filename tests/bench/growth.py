@@ -38,7 +38,13 @@ def curves(rows: list[dict[str, Any]]) -> list[dict[str, Any]]:
                     for row in own
                     if row["ways"].get(way, {}).get("cut") == "time"
                 ]
-                curve = {"series": series, "x": own[0]["growth"], "way": way, "figure": figure, "shown": shown}
+                curve = {
+                    "series": series,
+                    "x": own[0]["growth"],
+                    "way": way,
+                    "figure": figure,
+                    "shown": shown,
+                }
                 curve |= {"points": sorted(points), "cut": cut}
                 if points:
                     found.append(curve | _fit(points, LEAST[figure]))
@@ -99,7 +105,11 @@ def draw(found: list[dict[str, Any]], path: Path) -> None:
             if row == 0:
                 axis.set_title(TITLES.get(series, series), fontsize=9)
             if column == 0:
-                axis.set_ylabel({"rules": "ground rules", "conflicts": "conflicts, or nodes of the search"}.get(figure, figure))
+                axis.set_ylabel(
+                    {"rules": "ground rules", "conflicts": "conflicts, or nodes of the search"}.get(
+                        figure, figure
+                    )
+                )
     picture.tight_layout()
     kind = path.suffix[1:]
     path.parent.mkdir(parents=True, exist_ok=True)
@@ -125,6 +135,8 @@ def _plot(axis: Any, curve: dict[str, Any]) -> None:
         xs = [curve["from"], curve["to"]]
         axis.plot(xs, [curve["factor"] * x ** curve["exponent"] for x in xs], color=colour, lw=0.8)
     shown = [(x, y) for x, y in curve["points"] if y > 0]
-    axis.plot(*zip(*shown, strict=True) if shown else ((), ()), "o", ms=4, color=colour, label=label)
+    axis.plot(
+        *zip(*shown, strict=True) if shown else ((), ()), "o", ms=4, color=colour, label=label
+    )
     if curve["figure"] == "seconds" and curve["cut"]:
         axis.plot(*zip(*curve["cut"], strict=True), "^", ms=6, mfc="none", color=colour)

@@ -16,20 +16,23 @@ HOW = """
 Each measurement is a process of its own, on one core: Python, the package, and clingo with its
 default options. `baseline` is `encodings/` at the git revision `{revision}`, `plain` and `fast`
 are `encodings/` and `encodings/fast/` as they are now, `search` is the package's depth-first
-search, in Python. {plain}Seconds are those from the facts to the last answer, without the start
-of Python; memory is the most that the process had{start}. In each repetition the ways take
-turns, so that ratios are of one run; figures are medians. A way is measured up to
-{repeat} times, again only while it took less than {enough:g} s so far; the fast way is cut after
-{limit:g} s, the others after {others:g} s, at growth rows earlier. A row counts only if each way that
-ended gave the expected answer: the number of maps, the real map among them where all are listed,
-no map twice. Where the ways differ or one is wrong, it is WRONG and has no figures.
+search, in Python; where it would not end without, it is told how many places the real map has.
+{plain}Seconds are those from the facts to the last answer, without the start of Python; memory
+is the most that the process had{start}. In each repetition the ways take turns, so that ratios
+are of one run; figures are medians. A way is measured {repeat} times at most, again only while
+it took less than {enough:g} s so far. The fast way is cut after {limit:g} s, the others after
+{others:g} s, and at {memory:,} MB; growth rows have limits of their own. What was cut gives a
+bound; a way that was cut is not tried at the harder rows of the same kind, but for the fast one where
+there is a goal. A row counts only if each way that ended gave the expected answer: the number of maps, the real map among them
+where all are listed, none twice. Where one is wrong or the ways differ, it is WRONG, and has
+no figures.
 """
 
 
 def number(value: float | None, digits: int = 3) -> str:
     """A number to read: whole where it is large."""
     if value is None:
-        return "–"
+        return "-"
     if value == 0 or value >= 100 or value == int(value):
         return f"{value:,.0f}"
     return f"{value:.{digits}g}"
@@ -40,13 +43,13 @@ def ended(of: dict[str, Any] | None, key: str = "seconds") -> str:
     if of is None:
         return ""
     if "runs" not in of:
-        return "not tried" if of.get("cut") else "–"
+        return "not tried" if of.get("cut") else "-"
     if "cut" not in of:
         return number(of.get(key))
     if key == "memory":
         return f"> {number(of['memory'])}"
     if key != "seconds":
-        return "–"
+        return "-"
     return f"> {of['limit']:g}" if of["cut"] == "time" else "no memory left"
 
 
@@ -70,7 +73,7 @@ def goal(row: dict[str, Any]) -> str:
         elif met is False or met is None:
             texts.append(f"{wanted}: **not met**")
         else:
-            texts.append(f"{wanted}: **missed** by a factor of {met:.2g}")
+            texts.append(f"{wanted}: **missed** by a factor of {met:.3g}")
     return "; ".join(texts)
 
 
@@ -87,6 +90,11 @@ def answer(row: dict[str, Any]) -> str:
     return f"{row['number']:,}{known}"
 
 
+def reference() -> dict[str, Any]:
+    """Figures of others for the same tasks."""
+    return tomllib.loads(REFERENCE.read_text(encoding="utf-8"))
+
+
 def _table(head: list[str], lines: list[list[str]], left: int = 1) -> str:
     marks = ["---" if column < left else "--:" for column in range(len(head))]
     return "\n".join(f"| {' | '.join(line)} |" for line in [head, marks, *lines]) + "\n"
@@ -95,8 +103,10 @@ def _table(head: list[str], lines: list[list[str]], left: int = 1) -> str:
 def short(row: dict[str, Any]) -> str:
     """A row as a line for the terminal."""
     ways = ", ".join(f"{way} {ended(of)}" for way, of in row["ways"].items())
-    return f"{row['name']}: {answer(row).strip('*')}; seconds: {ways or 'none'}; {goal(row)}".rstrip(
-        "; "
+    return (
+        f"{row['name']}: {answer(row).strip('*')}; seconds: {ways or 'none'}; {goal(row)}".rstrip(
+            "; "
+        )
     )
 
 
@@ -117,10 +127,10 @@ def _results(rows: list[dict[str, Any]]) -> str:
 
 
 def _reference(rows: list[dict[str, Any]]) -> str:
-    reference = tomllib.loads(REFERENCE.read_text(encoding="utf-8"))
+    others = reference()
     lines = []
     for row in rows:
-        if row["name"] in reference["rows"]:
+        if row["name"] in others["rows"]:
             fast = row["ways"].get("fast", {})
             ours = f"{ended(fast)} s" + (
                 f", {number(fast['rules'])} rules, {number(fast['conflicts'])} conflicts"
@@ -129,9 +139,9 @@ def _reference(rows: list[dict[str, Any]]) -> str:
             )
             if row["verdict"].startswith(("WRONG", "skipped")):
                 ours = row["verdict"].partition(":")[0]
-            lines.append([row["name"], *reference["rows"][row["name"]], ours])
-    head = ["task", *reference["columns"], "our fast way"]
-    return f"{reference['source']}\n\n" + _table(head, lines, 5)
+            lines.append([row["name"], *others["rows"][row["name"]], ours])
+    head = ["task", *others["columns"], "our fast way"]
+    return f"{others['source']}\n\n" + _table(head, lines, 5)
 
 
 def _growth(found: list[dict[str, Any]], picture: str) -> str:
@@ -143,9 +153,9 @@ def _growth(found: list[dict[str, Any]], picture: str) -> str:
                 curve["series"],
                 f"{curve['figure']} by {AXES[curve['x']]}",
                 curve["way"],
-                f"{curve['exponent']:.2f}" if known else "–",
-                f"{curve['explained']:.3f}" if known else "–",
-                f"{curve['from']:.0f} to {curve['to']:.0f}" if known else "–",
+                f"{curve['exponent']:.2f}" if known else "-",
+                f"{curve['explained']:.3f}" if known else "-",
+                f"{curve['from']:.0f} to {curve['to']:.0f}" if known else "-",
                 str(curve["fitted"]),
             ]
         )
@@ -168,9 +178,14 @@ def _all(rows: list[dict[str, Any]]) -> str:
         for number_of_way, (way, of) in enumerate(row["ways"].items()):
             first = [row["name"], str(row.get("about", {}).get("steps", ""))]
             keys = ("rules", "atoms", "choices", "conflicts", "nodes", "seconds", "memory")
-            figures = [ended(of, key) if key in of or key == "seconds" else "–" for key in keys]
+            figures = [ended(of, key) if key in of or key == "seconds" else "-" for key in keys]
             lines.append(
-                [*(["", ""] if number_of_way else first), way, *figures, str(len(of.get("runs", ())))]
+                [
+                    *(["", ""] if number_of_way else first),
+                    way,
+                    *figures,
+                    str(len(of.get("runs", ()))),
+                ]
             )
     head = ["task", "steps", "way", "rules", "atoms", "choices", "conflicts", "nodes", "s", "MB"]
     return _table([*head, "runs"], lines)
@@ -189,8 +204,6 @@ def text(document: dict[str, Any], picture: str) -> str:
     ]
     start = f", of which Python and the package are {number(min(starts))} MB" if starts else ""
     how = HOW.format(**document["plan"], revision=document["baseline"], plain=plain, start=start)
-    why = {f"{row['name']}: {row['why']}" for row in rows if row["why"]}
-    assert why
     parts = [
         HEAD,
         _table(
@@ -206,24 +219,20 @@ def text(document: dict[str, Any], picture: str) -> str:
         "## Growth\n",
         _growth(document["growth"], picture),
         "## A million maps to a file\n" if document["memory"] else "",
-        _memory(document["memory"]) if document["memory"] else "",
+        memory(document["memory"]) if document["memory"] else "",
         "## Every figure\n",
         _all(rows),
         "## Where the expected numbers come from\n",
         _table(
             ["task", "expected", "from"],
-            [[row["name"], _expected(row), row["why"]] for row in rows if row["why"]],
+            [[row["name"], f"{row['expected']:,}", row["why"]] for row in rows if row["why"]],
             1,
         ),
     ]
     return "\n".join(part for part in parts if part)
 
 
-def _expected(row: dict[str, Any]) -> str:
-    return f"{row['expected']:,}"
-
-
-def _memory(found: dict[str, Any]) -> str:
+def memory(found: dict[str, Any]) -> str:
     tenths = [f"{mb:.0f}" for mb in found["tenths"]]
     flat = "The memory does not grow." if found["flat"] else "**The memory grows.**"
     return (

@@ -9,6 +9,12 @@ from typing import Any
 ROOT = Path(__file__).resolve().parents[2]
 ROWS = Path(__file__).with_name("rows.toml")
 WAYS = ("baseline", "plain", "fast", "search")
+KNOWN = {
+    "ask": ("count", "maps", "one", "table", "command"),
+    "ways": WAYS,
+    "goal": ("rules", "choices", "conflicts", "seconds", "memory", "solved"),
+    "growth": ("steps", "kinds"),
+}
 
 
 @dataclass(frozen=True)
@@ -30,6 +36,13 @@ class Row:
     cut: float | None = None
     large: bool = False
     quick: bool = False
+
+    def __post_init__(self) -> None:
+        for key, known in KNOWN.items():
+            value = getattr(self, key)
+            for word in [value] if isinstance(value, str) else value:
+                if word and word not in known:
+                    raise ValueError(f"{self.name}: {key}: {word} is none of {', '.join(known)}")
 
 
 def read(path: Path = ROWS) -> tuple[dict[str, str], list[Row]]:

@@ -15,7 +15,7 @@ import time
 from collections import Counter
 from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar
 
 import clingo
 from topomap import figure4, search, solver
@@ -33,7 +33,7 @@ class Control(clingo.Control):
     """A clingo that tells its figures when it goes."""
 
     made = told = 0
-    figures: Counter[str] = Counter()
+    figures: ClassVar[Counter[str]] = Counter()
 
     def __init__(self, *arguments: Any, **named: Any):
         super().__init__(*arguments, **named)
