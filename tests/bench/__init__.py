@@ -7,7 +7,7 @@
 ``task``        one measurement, in a process of its own: the ways
 ``measure``     rows by ways: repetitions, limits, verdicts, ratios
 ``growth``      curves: exponents, and the picture
-``memory``      memory while a million maps go to a file
+``memory``      memory while very many maps go to a file
 ``report``      docs/benchmark.md
 ``__main__``    the command
 ==============  ===========================================================

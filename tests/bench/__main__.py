@@ -24,6 +24,8 @@ from topomap.files import output
 from bench import growth, measure, memory, report, rows
 from bench.rows import ROOT, WAYS
 
+MAPS = 200_000
+
 
 def machine() -> dict[str, str]:
     """What it is measured on."""
@@ -74,12 +76,12 @@ def parse(argv: list[str] | None) -> argparse.Namespace:
     add = parser.add_argument
     add("--repeat", type=_number(int, 1), default=3, help="repetitions (default: %(default)s)")
     add("--limit", type=_number(float, 0.001), default=120, help="seconds for the fast way")
-    add("--others", type=_number(float, 0.001), help="for the others (default: half of that)")
+    add("--others", type=_number(float, 0.001), help="for the others (default: a third of that)")
     add("--memory", type=_number(int, 0), default=8192, help="MB for a run, 0: no limit")
     add("--only", metavar="PATTERN", help="rows whose name matches; no report")
     add("--quick", action="store_true", help="the smallest rows, once; no report")
     add("--large", action="store_true", help="larger rows too")
-    add("--maps", type=_number(int, 0), help="maps to a file, 0: none (default: a million)")
+    add("--maps", type=_number(int, 0), help=f"maps to a file, 0: none (default: {MAPS:,})")
     add("--networks", type=Path, default=ROOT.parent / "shared/maps", help="the real maps' folder")
     add("--rows", type=Path, default=rows.ROWS, help="the tasks")
     add(
@@ -115,7 +117,7 @@ def run(args: argparse.Namespace) -> int:
         raise InputError("no row has such a name")
     whole = not (args.only or args.quick) and args.rows == rows.ROWS
     file = args.json or str(ROOT / f"results/bench{'' if whole else '-selection'}.json")
-    maps = args.maps if args.maps is not None else 1_000_000 * whole
+    maps = args.maps if args.maps is not None else MAPS * whole
     docs = args.docs or (ROOT / "docs" if whole else None)
     with tempfile.TemporaryDirectory() as folder:
         try:
@@ -125,7 +127,7 @@ def run(args: argparse.Namespace) -> int:
         plan = measure.Plan(
             1 if args.quick else args.repeat,
             args.limit,
-            args.others or args.limit / 2,
+            args.others or args.limit / 3,
             args.memory,
             args.networks.resolve(),
             Path(folder) / "encodings",

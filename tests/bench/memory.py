@@ -1,4 +1,4 @@
-"""Memory while a million maps go to a file."""
+"""Memory while very many maps go to a file."""
 
 import re
 import subprocess

@@ -218,7 +218,7 @@ def text(document: dict[str, Any], picture: str) -> str:
         _reference(rows),
         "## Growth\n",
         _growth(document["growth"], picture),
-        "## A million maps to a file\n" if document["memory"] else "",
+        "## Very many maps to a file\n" if document["memory"] else "",
         memory(document["memory"]) if document["memory"] else "",
         "## Every figure\n",
         _all(rows),
