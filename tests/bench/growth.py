@@ -1,5 +1,6 @@
 """Curves: what the rows of a series take as they grow, the exponents, and the picture."""
 
+import logging
 import math
 from itertools import groupby
 from pathlib import Path
@@ -9,7 +10,11 @@ from typing import Any
 SHOWN = ("rules", "conflicts", "seconds")
 OF_SEARCH = {"conflicts": "nodes"}  # what stands for a figure in the curves of the search
 LEAST = {"rules": 1, "conflicts": 10, "nodes": 10, "seconds": 0.05}  # below it is no growth
-COLOURS = {"baseline": "#888888", "fast": "#0055aa", "search": "#cc5500"}
+STYLES: dict[str, dict[str, Any]] = {
+    "baseline": {"color": "#888888", "marker": "s", "markersize": 7, "markerfacecolor": "none"},
+    "fast": {"color": "#0055aa", "marker": "o", "markersize": 4},
+    "search": {"color": "#cc5500", "marker": "D", "markersize": 4},
+}
 TITLES = {
     "snakes": "grid snakes 3x3 ...,\nclosed perpendicular planar",
     "walks": "random walks on a 6x6 grid,\none perpendicular planar map",
@@ -25,7 +30,7 @@ def curves(rows: list[dict[str, Any]]) -> list[dict[str, Any]]:
     grown = [row for row in rows if row["growth"] and "about" in row]
     for series, group in groupby(grown, lambda row: row["series"]):
         own = list(group)
-        for way in COLOURS:
+        for way in STYLES:
             for shown in SHOWN:
                 figure = OF_SEARCH.get(shown, shown) if way == "search" else shown
                 points = [
@@ -77,14 +82,17 @@ def draw(found: list[dict[str, Any]], path: Path) -> None:
     """The picture, the same bytes for the same curves."""
     import matplotlib
 
+    logging.getLogger("matplotlib").setLevel(logging.ERROR)  # no word of a cache of fonts
     matplotlib.use("Agg")
     from matplotlib import pyplot
-    from matplotlib.ticker import LogFormatterSciNotation, NullFormatter
+    from matplotlib.ticker import NullLocator
 
-    matplotlib.rcParams.update({"svg.hashsalt": "topomap", "font.size": 9})
+    matplotlib.rcParams.update({"svg.hashsalt": "topomap", "svg.fonttype": "none", "font.size": 9})
     columns = list(dict.fromkeys(curve["series"] for curve in found))
     size = (3.6 * max(1, len(columns)) + 0.4, 8.4)
-    picture, axes = pyplot.subplots(len(SHOWN), max(1, len(columns)), figsize=size, squeeze=False)
+    picture, axes = pyplot.subplots(
+        len(SHOWN), max(1, len(columns)), figsize=size, squeeze=False, sharex="col"
+    )
     for row, figure in enumerate(SHOWN):
         for column, series in enumerate(columns):
             axis = axes[row][column]
@@ -93,14 +101,14 @@ def draw(found: list[dict[str, Any]], path: Path) -> None:
             own = [c for c in found if (c["series"], c["shown"]) == (series, figure)]
             for curve in own:
                 _plot(axis, curve)
-            if own:
-                ticks = sorted({x for c in own for x, _ in c["points"] + c["cut"]})
-                axis.set_xticks(_apart(ticks), [f"{x:g}" for x in _apart(ticks)])
-                axis.xaxis.set_minor_formatter(NullFormatter())
-                axis.minorticks_off()
-                axis.yaxis.set_major_formatter(LogFormatterSciNotation())
-                axis.set_xlabel(AXES[own[0]["x"]])
+            ys = [y for curve in own for _, y in curve["points"] if y > 0]
+            ys += [y for curve in own for _, y in curve["cut"] if figure == "seconds"]
+            if ys:  # a decade at least, so that the axis has numbers
+                bottom, top = math.floor(math.log10(min(ys))), math.ceil(math.log10(max(ys)))
+                axis.set_ylim(10**bottom / 2, 10 ** max(top, bottom + 1) * 2)
                 axis.legend(fontsize=8, frameon=False)
+            axis.xaxis.set_minor_locator(NullLocator())
+            axis.yaxis.set_minor_locator(NullLocator())
             axis.grid(color="#dddddd", linewidth=0.5)
             if row == 0:
                 axis.set_title(TITLES.get(series, series), fontsize=9)
@@ -110,6 +118,11 @@ def draw(found: list[dict[str, Any]], path: Path) -> None:
                         figure, figure
                     )
                 )
+    for column, series in enumerate(columns):
+        own = [curve for curve in found if curve["series"] == series]
+        ticks = _apart(sorted({x for curve in own for x, _ in curve["points"] + curve["cut"]}))
+        axes[-1][column].set_xticks(ticks, [f"{x:g}" for x in ticks])
+        axes[-1][column].set_xlabel(AXES[own[0]["x"]])
     picture.tight_layout()
     kind = path.suffix[1:]
     path.parent.mkdir(parents=True, exist_ok=True)
@@ -128,15 +141,14 @@ def _apart(values: list[float]) -> list[float]:
 
 def _plot(axis: Any, curve: dict[str, Any]) -> None:
     """Points, the line fitted to them, and at the time limit what was cut."""
-    colour = COLOURS[curve["way"]]
+    style = STYLES[curve["way"]]
+    colour = style["color"]
     label = curve["way"]
     if "exponent" in curve:
         label += f": exponent {curve['exponent']:.1f}"
         xs = [curve["from"], curve["to"]]
         axis.plot(xs, [curve["factor"] * x ** curve["exponent"] for x in xs], color=colour, lw=0.8)
-    shown = [(x, y) for x, y in curve["points"] if y > 0]
-    axis.plot(
-        *zip(*shown, strict=True) if shown else ((), ()), "o", ms=4, color=colour, label=label
-    )
+    shown = [(x, y) for x, y in curve["points"] if y > 0] or [(math.nan, math.nan)]
+    axis.plot(*zip(*shown, strict=True), linestyle="none", label=label, **style)
     if curve["figure"] == "seconds" and curve["cut"]:
         axis.plot(*zip(*curve["cut"], strict=True), "^", ms=6, mfc="none", color=colour)

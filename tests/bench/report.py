@@ -17,15 +17,16 @@ Each measurement is a process of its own, on one core: Python, the package, and 
 default options. `baseline` is `encodings/` at the git revision `{revision}`, `plain` and `fast`
 are `encodings/` and `encodings/fast/` as they are now, `search` is the package's depth-first
 search, in Python; where it would not end without, it is told how many places the real map has.
-{plain}Seconds are those from the facts to the last answer, without the start of Python; memory
-is the most that the process had{start}. In each repetition the ways take turns, so that ratios
-are of one run; figures are medians. A way is measured {repeat} times at most, again only while it
-took less than {enough:g} s so far. The fast way is cut after {limit:g} s, the others after
-{others:g} s, and at {memory:,} MB; growth rows have limits of their own. What was cut gives a
-bound; a way that was cut is not tried at the harder rows of the same kind, but for the fast one
-where there is a goal. A row counts only if each way that ended gave the expected answer: the
-number of maps, the real map among them where all are listed, none twice. Where one is wrong or
-the ways differ, it is WRONG, and has no figures.
+{plain}Figures of several programs are added up. Seconds are those from the facts to the last
+answer, without the start of Python; memory is the most that the process had{start}. In each
+repetition the ways take turns, so that ratios are of one run; figures are medians. A way is
+measured {repeat} times at most, again only while it took less than {enough:g} s so far. The fast
+way is cut after {limit:g} s, the others after {others:g} s, and at {memory:,} MB; growth rows
+have limits of their own. What was cut gives a bound; a way that was cut is not tried at the
+harder rows of the same kind, but for the fast one where there is a goal. A row counts only if
+each way that ended gave the expected answer: the number of maps, the real map among them where
+all are listed, none twice. Where one is wrong or the ways differ, it is WRONG, and has no
+figures.
 """
 
 
@@ -132,11 +133,11 @@ def _reference(rows: list[dict[str, Any]]) -> str:
     for row in rows:
         if row["name"] in others["rows"]:
             fast = row["ways"].get("fast", {})
-            ours = f"{ended(fast)} s" + (
-                f", {number(fast['rules'])} rules, {number(fast['conflicts'])} conflicts"
-                if "rules" in fast
-                else ""
-            )
+            ours = ended(fast)
+            if fast.get("runs"):
+                ours += " s"
+            if "rules" in fast:
+                ours += f", {number(fast['rules'])} rules, {number(fast['conflicts'])} conflicts"
             if row["verdict"].startswith(("WRONG", "skipped")):
                 ours = row["verdict"].partition(":")[0]
             lines.append([row["name"], *others["rows"][row["name"]], ours])
