@@ -222,5 +222,5 @@ def test_the_rows_are_those_of_the_table():
         "4x4 snake, at most 16 places, planar": 545,
         "4x4 snake, any number of places, all maps": 920_024,
         "4x4 snake, any number of places, planar": 49_123,
-        "5x5 snake, closed, planar, fewest places": 1_525,
+        "5x5 snake, closed, planar, at most 5 x 5 places": 1_525,
     }

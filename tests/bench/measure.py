@@ -75,6 +75,7 @@ def measured(row: Row, plan: Plan, ways: list[str]) -> dict[str, Any]:
     """What is known of a row: a verdict, and for each way its runs and their medians."""
     result: dict[str, Any] = {
         "name": row.name,
+        "ask": row.ask,
         "expected": row.expected,
         "why": row.why,
         "goal": row.goal,

@@ -85,8 +85,10 @@ def answer(row: dict[str, Any]) -> str:
         return f"**{verdict}**"
     if verdict == "open":
         return "no answer"
-    if row["expected"] == 0:
+    if row["ask"] in ("table", "command"):
         return "every figure"
+    if row["ask"] == "maps":
+        return f"{row['number']:,}, the real one" + " among them" * (row["number"] > 1)
     known = {"right": "", "agreed": " (the ways agree)", "one way": " (by one way)"}[verdict]
     return f"{row['number']:,}{known}"
 
