@@ -107,6 +107,16 @@ def test_ways_that_differ_are_wrong(bench):
     assert document["rows"][0]["verdict"].startswith("WRONG: the ways differ: {'fast': ")
 
 
+def test_a_map_that_is_not_there_is_skipped_and_a_way_that_fails_is_wrong(bench):
+    there = row(name="street", generate="network {networks}/none.graphml --route tour")
+    done, document, _ = bench(tasks=there + row(name="part", parts=["none"]))
+    assert done.returncode == 1
+    skipped, failed = (row["verdict"] for row in document["rows"])
+    assert skipped == "skipped: none.graphml is not there"
+    assert failed == "WRONG: fast failed, status 1"
+    assert "none.lp: not found" in done.stderr
+
+
 def test_the_time_limit_gives_a_floor(bench):
     done, document, text = bench("--limit", "0.5", "--others", "0.25", tasks=ENDLESS, report=True)
     assert done.returncode == 0

@@ -173,7 +173,7 @@ def _run(
         result["about"] = lines[0]
     if process.returncode == -signal.SIGALRM:
         return {"cut": "time", "limit": limit, "memory": usage.ru_maxrss / 1024}
-    if process.returncode in (-signal.SIGABRT, -signal.SIGKILL, -signal.SIGSEGV):
+    if process.returncode in (-signal.SIGABRT, -signal.SIGKILL):
         lines.append({"cut": "memory"})  # C++ could not even say so, or the system ended it
     elif process.returncode or len(lines) < 2:
         raise Wrong(f"{way} failed, status {process.returncode}")

@@ -87,9 +87,9 @@ def answer(row: dict[str, Any]) -> str:
         return "no answer"
     if row["ask"] in ("table", "command"):
         return "every figure"
-    if row["ask"] == "maps":
-        return f"{row['number']:,}, the real one" + " among them" * (row["number"] > 1)
     known = {"right": "", "agreed": " (the ways agree)", "one way": " (by one way)"}[verdict]
+    if row["ask"] == "maps":
+        known = ", the real one" + " among them" * (row["number"] > 1) + known
     return f"{row['number']:,}{known}"
 
 
