@@ -67,6 +67,7 @@ def test_what_is_measured_is_written(bench, tmp_path):
     for way, of in only["ways"].items():
         assert of["number"] == 88
         assert of["seconds"] > 0
+        assert of["processor seconds"] > 0
         assert 10 < of["memory"] < 1000
         if way == "search":
             assert of["nodes"] == 317

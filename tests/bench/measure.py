@@ -19,7 +19,10 @@ from topomap.errors import InputError
 
 from bench.rows import ROOT, Row
 
-FIGURES = ("rules", "atoms", "choices", "conflicts", "nodes", "seconds", "memory")
+FIGURES = (
+    *("rules", "atoms", "choices", "conflicts", "nodes"),
+    *("seconds", "processor seconds", "memory"),
+)
 ENOUGH = 20.0  # seconds in which a way is measured again
 
 

@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from bench.growth import AXES, LEAST
+from bench.measure import FIGURES
 
 REFERENCE = Path(__file__).with_name("reference.toml")
 HEAD = """# Benchmark
@@ -176,12 +177,11 @@ def _all(rows: list[dict[str, Any]]) -> str:
     lines = []
     for row in rows:
         if row["verdict"].startswith("WRONG"):
-            lines.append([row["name"], answer(row), *[""] * 9])
+            lines.append([row["name"], answer(row), *[""] * 10])
             continue
         for number_of_way, (way, of) in enumerate(row["ways"].items()):
             first = [row["name"], str(row.get("about", {}).get("steps", ""))]
-            keys = ("rules", "atoms", "choices", "conflicts", "nodes", "seconds", "memory")
-            figures = [ended(of, key) if key in of or key == "seconds" else "-" for key in keys]
+            figures = [ended(of, key) if key in of or key == "seconds" else "-" for key in FIGURES]
             lines.append(
                 [
                     *(["", ""] if number_of_way else first),
@@ -190,7 +190,8 @@ def _all(rows: list[dict[str, Any]]) -> str:
                     str(len(of.get("runs", ()))),
                 ]
             )
-    head = ["task", "steps", "way", "rules", "atoms", "choices", "conflicts", "nodes", "s", "MB"]
+    head = ["task", "steps", "way", "rules", "atoms", "choices", "conflicts", "nodes"]
+    head += ["s", "of the processor", "MB"]
     return _table([*head, "runs"], lines)
 
 
