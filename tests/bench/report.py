@@ -1,5 +1,6 @@
 """Tables for the terminal and for docs/benchmark.md."""
 
+import textwrap
 import tomllib
 from pathlib import Path
 from typing import Any
@@ -148,6 +149,14 @@ def _reference(rows: list[dict[str, Any]]) -> str:
     return f"{others['source']}\n\n" + _table(head, lines, 5)
 
 
+def _sources(rows: list[dict[str, Any]]) -> str:
+    tasks: dict[str, list[str]] = {}
+    for row in rows:
+        if row["why"]:
+            tasks.setdefault(row["why"], []).append(f"{row['name']}: {row['expected']:,}")
+    return "".join(f"- {why[0].upper()}{why[1:]}. {'; '.join(of)}.\n" for why, of in tasks.items())
+
+
 def _growth(found: list[dict[str, Any]], picture: str) -> str:
     lines = []
     for curve in found:
@@ -208,6 +217,7 @@ def text(document: dict[str, Any], picture: str) -> str:
     ]
     start = f", of which Python and the package are {number(min(starts))} MB" if starts else ""
     how = HOW.format(**document["plan"], revision=document["baseline"], plain=plain, start=start)
+    how = "\n" + textwrap.fill(how, 98, break_on_hyphens=False) + "\n"
     parts = [
         HEAD,
         _table(
@@ -227,11 +237,7 @@ def text(document: dict[str, Any], picture: str) -> str:
         "## Every figure\n",
         _all(rows),
         "## Where the expected numbers come from\n",
-        _table(
-            ["task", "expected", "from"],
-            [[row["name"], f"{row['expected']:,}", row["why"]] for row in rows if row["why"]],
-            1,
-        ),
+        _sources(rows),
     ]
     return "\n".join(part for part in parts if part)
 
