@@ -48,7 +48,7 @@ def test_figure_4(topomap, column, order):
 def test_parts_of_the_tree_add_up_to_it(jobs):
     column = COLUMNS[3]
     experience = read(ROOT / f"instances/{column['instance']}.lp")
-    figures = searched(experience, asked(column), QUIET, Journal(), jobs).figures()
+    figures = searched(experience, asked(column), QUIET, Journal(), crew).figures()
     assert {**figures, **column["paper"], **column["expected"]} == figures
 
 
