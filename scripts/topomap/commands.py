@@ -175,7 +175,7 @@ def _found(
     elif query.optimizes or (crew is ALONE and not journal.kept):
         yield from filter(None, way(experience, query, watch))
     else:
-        parts = search.cubes(experience, query)
+        parts, depth = search.cubes(experience, query)
         done = 0
         known: set[Cube] = set()  # the maps of the part that was cut
         watch.rest()
@@ -191,7 +191,7 @@ def _found(
                 yield Found(at, query.kind)
         watch.go_on()
         if args.by == "clingo":
-            solver.demand_cover(experience, query, watch, parts)
+            solver.demand_cover(experience, query, watch, parts, depth)
         if crew is ALONE:
             left = way(experience, query, watch, cubes=parts[done:])
         else:

@@ -84,13 +84,14 @@ def _children(node: Hypothesis) -> list[int]:
     return node.children() if node.steps < node.experience.steps else []
 
 
-def cubes(experience: Experience, query: Query, least: int = 64) -> list[Cube]:
+def cubes(experience: Experience, query: Query, least: int = 64) -> tuple[list[Cube], int]:
     """Nodes that part the hypotheses, at least so many of them if there are as many, so that
     a long run can be shared out, cut and resumed.
 
     They are of like size, as far as it can be told from the first level of the tree that has
     32 times as many nodes (or else the last one): the parts of the tree with more of
-    these are parted again. A node with none has no hypotheses."""
+    these are parted again. The second figure is the step of that level: the hypotheses after
+    that step, and after each later one, begin with one of the nodes each."""
     level: list[Cube] = []
     for node in breadth_first(root(experience, query)):
         if level and len(node.at) > len(level[0]):
@@ -107,7 +108,7 @@ def cubes(experience: Experience, query: Query, least: int = 64) -> list[Cube]:
         else:
             groups = groupby(under, key=itemgetter(size))
             open_parts += [(size + 1, list(group)) for _, group in groups][::-1]
-    return parts
+    return parts, len(level[0]) - 1
 
 
 def top(node: Hypothesis, cubes: Collection[Cube]) -> Iterator[Hypothesis]:

@@ -126,10 +126,10 @@ class Processes:
         self._workers[ours] = process
 
     def _fire(self, pipe: Connection) -> None:
-        process = self._workers.pop(pipe)
-        process.kill()
-        process.join()
-        pipe.close()
+        if process := self._workers.pop(pipe, None):
+            process.kill()
+            process.join()
+            pipe.close()
 
     def __enter__(self) -> "Processes":
         return self

@@ -286,15 +286,16 @@ def answers(
     return _in_thread(program, watch, work)
 
 
-def demand_cover(experience: Experience, query: Query, watch: Watch, cubes: Sequence[Cube]) -> None:
-    """Demand of clingo that each hypothesis begins with just one of the cubes, so that no
-    answer depends on how the search has parted the tree."""
-    depth = max(map(len, cubes)) - 1
-    level = replace(query, parts=query.parts & set(PRUNING), horizon=depth)
+def demand_cover(
+    experience: Experience, query: Query, watch: Watch, cubes: Sequence[Cube], step: int
+) -> None:
+    """Demand of clingo that each hypothesis after a step begins with just one of the cubes,
+    so that no answer depends on how the search has parted the tree."""
+    level = replace(query, parts=query.parts & set(PRUNING), horizon=step)
     known, parted = watch.found, set(cubes)
     for found in hypotheses(experience, level, watch):
-        if found and sum(found.at[:size] in parted for size in range(1, depth + 2)) != 1:
-            raise RuntimeError(f"clingo and the search differ before step {depth}")
+        if found and sum(found.at[:size] in parted for size in range(1, step + 2)) != 1:
+            raise RuntimeError(f"clingo and the search differ by step {step}")
     watch.found = known
 
 

@@ -56,15 +56,16 @@ def tree(
     monotone = query.parts <= set(PRUNING)
     last = experience.steps if query.horizon is None else min(query.horizon, experience.steps)
     parts: list[Cube] = [()]
-    cubes: list[Cube] = []  # to come in its place
+    cubes: list[Cube] = []  # to come in its place, at a step
+    depth = 0
     maps = 0
     for step in range(last + 1):
         watch.title(f"step {step} of {last}")
         if not cubes and (not monotone or max(result["per_step"], default=0) > LARGE):
-            cubes = search.cubes(experience, query)
-        if cubes and parts == [()] and max(map(len, cubes)) <= step:
-            demand_cover(experience, query, watch, cubes)
-            parts = cubes
+            cubes, depth = search.cubes(experience, query)
+        if cubes and step >= depth:
+            demand_cover(experience, query, watch, cubes, depth)
+            parts, depth = cubes, last + 1
         at_step = replace(query, horizon=step)
         pairs = list(counted([(at_step, cube, True) for cube in parts]))
         result["per_step"].append(sum(total for total, _ in pairs))
@@ -82,8 +83,8 @@ def tree(
 
 def final_maps(experience: Experience, query: Query, watch: Watch, crew: Crew) -> int:
     """The hypotheses after the last step, by clingo."""
-    parts = search.cubes(experience, query)
-    demand_cover(experience, query, watch, parts)
+    parts, depth = search.cubes(experience, query)
+    demand_cover(experience, query, watch, parts, depth)
     units = [(query, cube, False) for cube in parts]
     return sum(total for total, _ in crew.each(partial(_counted, experience), units, watch))
 
@@ -159,7 +160,7 @@ def searched(
 ) -> Tally:
     """The figures of the tree by depth-first search: of its top, and of the parts below it,
     each a unit of the journal."""
-    parts = search.cubes(experience, query, 256)
+    parts, _ = search.cubes(experience, query, 256)
     node = search.root(experience, query)
     tally = Tally(node.experience.steps)
     for _ in search.top(node, set(parts)):
