@@ -105,9 +105,10 @@ def test_whoever_resumes_comes_to_the_same(tmp_path, monkeypatch):
     """The units do not depend on how many do them."""
     whole, file = tmp_path / "whole", tmp_path / "file"
     for command in ("count", "solve"):
-        assert main([command, PAPER, "-o", str(whole)]) == 0
+        asked = [command, PAPER, "--horizon", "18"]
+        assert main([*asked, "-o", str(whole)]) == 0
         for jobs, units in ((2, 30), (1, 10), (3, None)):
-            call = [command, PAPER, "--jobs", str(jobs), "-o", str(file), "--resume"]
+            call = [*asked, "--jobs", str(jobs), "-o", str(file), "--resume"]
             with monkeypatch.context() as patch:
                 if units is None:
                     assert main(call) == 0
