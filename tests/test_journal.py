@@ -8,10 +8,11 @@ import time
 
 import pytest
 from conftest import BIN, ROOT, TRIED, run
-from topomap import beyond, search, solver
+from topomap import beyond, search, solver, statistics
 from topomap.cli import main
 from topomap.experience import read
 from topomap.journal import Journal
+from topomap.share import ALONE
 from topomap.solver import Query, Watch
 
 GRID = str(ROOT / "instances/grid-3x3-snake.lp")
@@ -19,12 +20,20 @@ PAPER = str(ROOT / "instances/grid-3x4-paper.lp")
 SNAKE = str(ROOT / "instances/grid-4x4-snake.lp")
 LONG_RUNS = {
     "count": ["count", PAPER],
+    "count by two": ["count", PAPER, "--jobs", "2"],
     "count, JSON": ["count", PAPER, "--planar", "--json"],
     "solve": ["solve", PAPER],
     "solve, JSON": ["solve", PAPER, "--boundary", "--json"],
     "solve by search": ["solve", PAPER, "--by", "search"],
+    "solve by two": ["solve", PAPER, "--jobs", "2"],
     "solve two": ["solve", GRID, PAPER, "--json"],
 }
+
+
+@pytest.fixture(autouse=True)
+def many_units(monkeypatch):
+    """Have small trees counted cube by cube, too."""
+    monkeypatch.setattr(statistics, "LARGE", 10)
 
 
 class Cut(Exception):
@@ -57,7 +66,7 @@ def test_a_run_that_was_cut_goes_on(tmp_path, monkeypatch, name):
     cuts = 0
     while not file.exists():
         with monkeypatch.context() as patch:
-            cut_after(patch, draw.randrange(*((100, 500) if "count" in name else (10, 40))))
+            cut_after(patch, draw.randrange(*((50, 150) if "count" in name else (20, 40))))
             try:
                 assert main([*LONG_RUNS[name], "-o", str(file), "--resume"]) == 0
             except Cut:
@@ -89,7 +98,26 @@ def test_what_is_done_is_not_done_again(tmp_path, monkeypatch, way):
     monkeypatch.setattr(way, "hypotheses", spy)
     assert main([*call, "--resume"]) == 0
     (left,) = asked
-    assert len(left) == len(search.cubes(read(PAPER), Query(), 256)) - 40
+    assert len(left) == len(search.cubes(read(PAPER), Query())[0]) - 40
+
+
+def test_whoever_resumes_comes_to_the_same(tmp_path, monkeypatch):
+    """The units do not depend on how many do them."""
+    whole, file = tmp_path / "whole", tmp_path / "file"
+    for command in ("count", "solve"):
+        asked = [command, PAPER, "--horizon", "18"]
+        assert main([*asked, "-o", str(whole)]) == 0
+        for jobs, units in ((2, 30), (1, 10), (3, None)):
+            call = [*asked, "--jobs", str(jobs), "-o", str(file), "--resume"]
+            with monkeypatch.context() as patch:
+                if units is None:
+                    assert main(call) == 0
+                    break
+                cut_after(patch, units)
+                with pytest.raises(Cut):
+                    main(call)
+        assert ordered(file) == ordered(whole)
+        file.unlink()
 
 
 def test_without_resume_a_run_begins_anew(tmp_path, monkeypatch):
@@ -243,7 +271,7 @@ def test_beyond_goes_on(tmp_path, monkeypatch):
 
 def test_clingo_may_not_finish_beyond(monkeypatch):
     monkeypatch.setattr(beyond, "COLUMNS", [(4, 4, 16, False)])
-    (row,) = beyond.rows(1, Watch(quiet=True), Journal(), limit=0.01)
+    (row,) = beyond.rows(ALONE, Watch(quiet=True), Journal(), limit=0.01)
     assert (row["final"], row["clingo"]) == (23685, {})
 
 

@@ -13,6 +13,7 @@ from topomap.environment import grid
 from topomap.experience import Experience, read
 from topomap.generate import instance
 from topomap.journal import Journal
+from topomap.share import crew
 from topomap.solver import Query, Stopped, Watch
 from topomap.statistics import Tally, searched
 from worlds import random_experience
@@ -48,7 +49,8 @@ def test_figure_4(topomap, column, order):
 def test_parts_of_the_tree_add_up_to_it(jobs):
     column = COLUMNS[3]
     experience = read(ROOT / f"instances/{column['instance']}.lp")
-    figures = searched(experience, asked(column), QUIET, Journal(), jobs).figures()
+    with crew(jobs) as workers:
+        figures = searched(experience, asked(column), QUIET, Journal(), workers).figures()
     assert {**figures, **column["paper"], **column["expected"]} == figures
 
 
@@ -275,7 +277,8 @@ def counted_again(row):
     rows, columns = map(int, row["environment"].split("x"))
     query = Query(frozenset(["planar"] if row["planarity"] else []), row["places"])
     made = instance(grid(rows, columns), "snake")
-    return searched(made.experience, query, QUIET, Journal(), jobs=2).figures()
+    with crew(2) as workers:
+        return searched(made.experience, query, QUIET, Journal(), workers).figures()
 
 
 def test_tallies_keep_the_optimal_ones_of_least_cost():

@@ -9,8 +9,9 @@ from typing import Any
 from topomap.environment import grid
 from topomap.generate import Instance, instance
 from topomap.journal import Journal
-from topomap.solver import Query, Stopped, Watch, count
-from topomap.statistics import searched
+from topomap.share import Crew
+from topomap.solver import Query, Stopped, Watch
+from topomap.statistics import final_maps, searched
 
 VERDICT = "Counted by depth-first search, the final maps by clingo too where it finished."
 # rows, columns, most places, planarity
@@ -25,25 +26,27 @@ COLUMNS: list[tuple[int, int, int | None, bool]] = [
 ]
 
 
-def rows(jobs: int, watch: Watch, journal: Journal, limit: float = 600) -> Iterator[dict[str, Any]]:
+def rows(
+    crew: Crew, watch: Watch, journal: Journal, limit: float = 600
+) -> Iterator[dict[str, Any]]:
     """The rows of the table; clingo is given ``limit`` seconds for each. Raises Stopped."""
     for height, width, places, planar in COLUMNS:
         made = instance(grid(height, width), "snake")
         query = Query(frozenset(["planar"] if planar else []), places)
         watch.title(f"{made.name}, {'planar' if planar else 'any'} maps")
-        figures = searched(made.experience, query, watch, journal, jobs).figures()
+        figures = searched(made.experience, query, watch, journal, crew).figures()
         yield {
             "environment": f"{height}x{width}",
             "planarity": planar,
             "places": places,
             **figures,
             "way": "depth-first search",
-            "clingo": _by_clingo(made, query, limit, watch, journal),
+            "clingo": _by_clingo(made, query, limit, watch, journal, crew),
         }
 
 
 def _by_clingo(
-    made: Instance, query: Query, limit: float, watch: Watch, journal: Journal
+    made: Instance, query: Query, limit: float, watch: Watch, journal: Journal, crew: Crew
 ) -> dict[str, int]:
     """The number of final maps, if clingo has it in ``limit`` seconds."""
     for value in journal.known(1):
@@ -52,8 +55,7 @@ def _by_clingo(
     deadline = watch.deadline
     watch.deadline = min(deadline or math.inf, time.monotonic() + limit)
     try:
-        ((total, _),) = count(made.experience, query, watch)
-        final = {"final": total}
+        final = {"final": final_maps(made.experience, query, watch, crew)}
     except Stopped:
         watch.deadline = deadline
         watch.tick()  # raises it again, if it was not for the limit

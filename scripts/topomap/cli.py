@@ -8,11 +8,11 @@ from collections.abc import Iterable, Sequence
 from functools import cache
 from typing import Any, NoReturn
 
-from topomap import __version__, commands, maps, search
+from topomap import __version__, commands, maps
 from topomap.environment import MOST_STEPS
 from topomap.errors import BAD_INPUT, DONE, INTERRUPTED, PARTIAL, InputError, say
 from topomap.experience import LARGEST
-from topomap.solver import FORMS, OPTIMIZING, PARTS
+from topomap.solver import FORMS, OPTIMIZING, PARTS, PRUNING
 
 STATUS = """\
 exit status: 0 done; 1 the answer is no (the table differs, no map, an unsound map);
@@ -237,7 +237,8 @@ def _add_solve(group: Any) -> None:
         "enumerate the maps that are consistent with an exploration",
         """\
   topomap solve instances/grid-3x3-snake.lp --planar --closed
-  topomap solve instances/grid-3x4-paper.lp --optimal --json""",
+  topomap solve instances/grid-3x4-paper.lp --optimal --json
+  topomap solve instances/grid-4x4-snake.lp --bound 16 --jobs 2 -o maps.txt""",
     )
     command.add_argument("instance", nargs="+", metavar="INSTANCE")
     command.add_argument(
@@ -259,6 +260,7 @@ def _add_solve(group: Any) -> None:
         help="which of the two ways gives the answer (default: %(default)s)",
     )
     _add_query(command, PARTS)
+    _add_crew(command, "; not with --optimal, --minimal or --genus")
     _add_encoding(command)
     _add_resume(command)
 
@@ -281,16 +283,36 @@ def _add_resume(command: Parser) -> None:
     )
 
 
+def _add_crew(command: Parser, but: str = "") -> None:
+    group = command.add_mutually_exclusive_group()
+    group.add_argument(
+        "--jobs",
+        type=_number(int, 1),
+        metavar="N",
+        help=f"share the work out among N processes{but} (default: 1)",
+    )
+    group.add_argument(
+        "--dask",
+        metavar="ADDRESS",
+        help="share it out among the workers of a running Dask cluster, such as "
+        "tcp://127.0.0.1:8786; they need this version of topomap (and here the extra: "
+        "pip install 'topomap[dask]')",
+    )
+
+
 def _add_count(group: Any) -> None:
     command = _command(
         group,
         "count",
         commands.count,
         "count the search tree of an exploration, as the paper's Figure 4 does",
-        "  topomap count instances/grid-4x4-snake.lp --planar --bound 16",
+        """\
+  topomap count instances/grid-4x4-snake.lp --planar --bound 16
+  topomap count instances/grid-4x4-snake.lp --jobs 2""",
     )
     command.add_argument("instance", metavar="INSTANCE")
     _add_query(command, [part for part in PARTS if part not in OPTIMIZING])
+    _add_crew(command)
     _add_encoding(command)
     _add_resume(command)
 
@@ -338,7 +360,7 @@ def _add_search(group: Any) -> None:
         help="breadth: step by step, counts the whole tree; depth: the same in little memory; "
         "best: by the optimality policy, until a closed map is found (default: %(default)s)",
     )
-    _add_query(command, search.PRUNING)
+    _add_query(command, PRUNING)
 
 
 def _add_branching(group: Any) -> None:

@@ -7,20 +7,23 @@ import hashlib
 import json
 import os
 import shlex
+from array import array
 from collections.abc import Iterator
+from functools import partial
 from pathlib import Path
 from typing import IO, Any
 
-from topomap import beyond, branching, environment, figure4, maps, network, search, solver
+from topomap import beyond, branching, environment, figure4, maps, network, search, share, solver
 from topomap.check import STEP_RULES, by_definition
 from topomap.errors import DONE, INTERRUPTED, NO, PARTIAL, InputError, say
-from topomap.experience import Experience, read
+from topomap.experience import LARGEST, Experience, read
 from topomap.family import expand
 from topomap.files import output, text
 from topomap.generate import Instance, instance
 from topomap.journal import Journal
 from topomap.report import Report
-from topomap.solver import INTERRUPT, PARTS, Cube, Found, Query, Stopped, Watch, best
+from topomap.share import ALONE, Crew
+from topomap.solver import INTERRUPT, PARTS, Cube, Found, Query, Stopped, Watch, Way, best
 from topomap.statistics import KEYS, Tally, tree
 from topomap.topology import TopologicalMap
 
@@ -91,8 +94,7 @@ def _query(args: argparse.Namespace) -> Query:
 
 def _run(args: argparse.Namespace, *experiences: Experience) -> dict[str, Any]:
     """What a run computes: a journal goes on with no other one."""
-    texts = [experience.facts() for experience in experiences]
-    texts += [path.read_text() for path in sorted(solver.ENCODINGS.rglob("*.lp"))]
+    texts = [solver.digest(), *(experience.facts() for experience in experiences)]
     keys = ("by", "encoding", *PARTS, "optimal", "bound", "horizon")
     asked = {key: getattr(args, key, None) for key in keys}
     digest = hashlib.sha256("".join(texts).encode()).hexdigest()
@@ -108,7 +110,11 @@ def solve(args: argparse.Namespace) -> int:
         inputs.append((path, experience, truth))
     run = _run(args, *(experience for _, experience, _ in inputs))
     statuses = []
-    with Journal(args.output, run, args.resume, True) as journal, output(args.output) as out:
+    with (
+        _crew(args) as crew,
+        Journal(args.output, run, args.resume, True) as journal,
+        output(args.output) as out,
+    ):
         if args.json and len(inputs) > 1:
             out.write('{"results": [\n')
         for number, (path, experience, truth) in enumerate(inputs):
@@ -116,7 +122,7 @@ def solve(args: argparse.Namespace) -> int:
                 out.write(",\n" * (number > 0) if args.json else f"{path}\n")
             kind = "optimal" if args.optimal else None
             report = Report(out, path, experience, _query(args), kind, truth, args.json)
-            statuses.append(_solve_one(args, experience, report, journal))
+            statuses.append(_solve_one(args, experience, report, journal, crew))
             if statuses[-1] == INTERRUPTED:
                 break
             if statuses[-1] > NO:
@@ -129,12 +135,12 @@ def solve(args: argparse.Namespace) -> int:
 
 
 def _solve_one(
-    args: argparse.Namespace, experience: Experience, report: Report, journal: Journal
+    args: argparse.Namespace, experience: Experience, report: Report, journal: Journal, crew: Crew
 ) -> int:
     fault, candidate = None, None
     with Watch(args.timeout) as watch:
         try:
-            for found in _found(args, experience, watch, journal):
+            for found in _found(args, experience, watch, journal, crew):
                 if not found.proved:
                     candidate = found
                 elif report.count == args.limit:
@@ -158,18 +164,18 @@ def _status(fault: str | None, yes: bool) -> int:
 
 
 def _found(
-    args: argparse.Namespace, experience: Experience, watch: Watch, journal: Journal
+    args: argparse.Namespace, experience: Experience, watch: Watch, journal: Journal, crew: Crew
 ) -> Iterator[Found]:
-    """The maps that ``solve`` asks for; if all go to a file, part by part of the tree, each
-    part a unit of the journal."""
+    """The maps that ``solve`` asks for; if all go to a file or there is a crew, part by part
+    of the tree, each part a unit of the journal."""
     query = _query(args)
     way = search.hypotheses if args.by == "search" else solver.hypotheses
     if args.optimal:
         yield from filter(None, best(experience, query, watch, way))
-    elif query.optimizes or not journal.kept:
+    elif query.optimizes or (crew is ALONE and not journal.kept):
         yield from filter(None, way(experience, query, watch))
     else:
-        parts = search.cubes(experience, query, 4 * 64)
+        parts, depth = search.cubes(experience, query)
         done = 0
         known: set[Cube] = set()  # the maps of the part that was cut
         watch.rest()
@@ -185,14 +191,51 @@ def _found(
                 yield Found(at, query.kind)
         watch.go_on()
         if args.by == "clingo":
-            solver.demand_level(experience, query, watch, parts)
-        for found in way(experience, query, watch, cubes=parts[done:]):
+            solver.demand_cover(experience, query, watch, parts, depth)
+        if crew is ALONE:
+            left = way(experience, query, watch, cubes=parts[done:])
+        else:
+            left = _shared(crew, way, experience, query, watch, parts[done:])
+        for found in left:
             if found is None:
                 known.clear()
                 journal.commit()
             elif found.at not in known:
                 journal.add(found.at)
                 yield found
+
+
+def _shared(
+    crew: Crew, way: Way, experience: Experience, query: Query, watch: Watch, cubes: list[Cube]
+) -> Iterator[Found | None]:
+    """What a way gives, by a crew."""
+    steps = experience.cut(LARGEST if query.horizon is None else query.horizon).steps
+    for numbers in crew.each(partial(_numbers, way, experience, query), cubes, watch):
+        dstates = list(zip(numbers[::2], numbers[1::2], strict=True))
+        watch.found += len(dstates) // (steps + 1)
+        for start in range(0, len(dstates), steps + 1):
+            yield Found(tuple(dstates[start : start + steps + 1]), query.kind)
+        yield None
+
+
+def _numbers(
+    way: Way, experience: Experience, query: Query, cube: Cube, watch: Watch | None
+) -> "array[int]":
+    """The maps that begin with a cube, as places and gateways in a row: a third of the memory
+    that they take as maps."""
+    numbers = array("i")
+    for found in way(experience, query, watch or Watch(quiet=True), cubes=[cube]):
+        for dstate in found.at if found else ():
+            numbers.extend(dstate)
+    return numbers
+
+
+def _crew(args: argparse.Namespace) -> Crew:
+    """Those who do the work."""
+    shared = (args.jobs or 1) > 1 or args.dask
+    if shared and (getattr(args, "optimal", False) or _query(args).optimizes):
+        raise InputError("topomap solve: --jobs and --dask share out all maps, not the best ones")
+    return share.crew(args.jobs or 1, args.dask)
 
 
 def _truth(file: str, experience: Experience, horizon: int | None) -> TopologicalMap:
@@ -267,12 +310,13 @@ def count(args: argparse.Namespace) -> int:
     figures: dict[str, Any] = {}
     fault = None
     with (
+        _crew(args) as crew,
         Journal(args.output, _run(args, experience), args.resume) as journal,
         output(args.output) as out,
     ):
         try:
             with Watch(args.timeout) as watch:
-                tree(experience, _query(args), watch, journal, figures)
+                tree(experience, _query(args), watch, journal, figures, crew)
         except Stopped as stopped:
             fault = str(stopped)
         _write_figures(args, out, figures, fault)
@@ -387,7 +431,8 @@ def table(args: argparse.Namespace) -> int:
                 Journal(path, {"command": name, "columns": beyond.COLUMNS}, args.resume)
             )
             watch = stack.enter_context(Watch())
-            counted = beyond.rows(jobs, watch, journal)
+            crew = stack.enter_context(share.crew(jobs))
+            counted = beyond.rows(crew, watch, journal)
         else:
             columns = len(figure4.COLUMNS)
             counted = figure4.rows(jobs)

@@ -7,12 +7,13 @@ it moves; what is to be known of a node is read while it stands there.
 import heapq
 from collections.abc import Collection, Iterator, Sequence
 from dataclasses import replace
+from itertools import groupby
+from operator import itemgetter
 
 from topomap.experience import Experience
 from topomap.hypothesis import Hypothesis
-from topomap.solver import Cube, Found, Query, Watch
+from topomap.solver import PRUNING, Cube, Found, Query, Watch
 
-PRUNING = ("planar", "perpendicular")
 OFTEN = 500  # nodes between two looks at the clock
 
 
@@ -83,17 +84,42 @@ def _children(node: Hypothesis) -> list[int]:
     return node.children() if node.steps < node.experience.steps else []
 
 
-def cubes(experience: Experience, query: Query, least: int = 64) -> list[Cube]:
-    """The nodes of the first level of the tree that has ``least``, or else of its last one:
-    they part the hypotheses, so that a long run can be shared out, cut and resumed."""
+def cubes(experience: Experience, query: Query, least: int = 64) -> tuple[list[Cube], int]:
+    """Nodes that part the hypotheses, at least so many of them if there are as many, so that
+    a long run can be shared out, cut and resumed.
+
+    They are of like size, as far as it can be told from the first level of the tree that has
+    32 times as many nodes (or else the last one): the parts of the tree with more of
+    these are parted again. The second figure is the step of that level: the hypotheses after
+    that step, and after each later one, begin with one of the nodes each."""
     level: list[Cube] = []
     for node in breadth_first(root(experience, query)):
         if level and len(node.at) > len(level[0]):
-            if len(level) >= least:
+            if len(level) >= 32 * least:
                 break
             level = []
         level.append(node.dstates)
-    return level
+    parts: list[Cube] = []
+    open_parts = [(1, level)]
+    while open_parts:
+        size, under = open_parts.pop()
+        if len(under) * least <= len(level) or size == len(under[0]):
+            parts.append(under[0][:size])
+        else:
+            groups = groupby(under, key=itemgetter(size))
+            open_parts += [(size + 1, list(group)) for _, group in groups][::-1]
+    return parts, len(level[0]) - 1
+
+
+def top(node: Hypothesis, cubes: Collection[Cube]) -> Iterator[Hypothesis]:
+    """The nodes from this one down that are of none of the cubes' parts of the tree."""
+    border = [node.dstates]
+    while border:
+        at = border.pop()
+        if at not in cubes:
+            node.goto(at)
+            yield node
+            border += [(*at, divmod(arrival, node.slots)) for arrival in _children(node)]
 
 
 def hypotheses(

@@ -5,6 +5,7 @@ moment, while it grounds too, and what was found until then is kept.
 """
 
 import contextlib
+import hashlib
 import queue
 import signal
 import sys
@@ -12,12 +13,14 @@ import threading
 import time
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import cache
 from pathlib import Path
-from typing import TypeVar
+from typing import Any, TypeVar
 
 import clingo
 from tqdm import tqdm
 
+from topomap import __version__
 from topomap.errors import InputError
 from topomap.experience import DState, Experience
 
@@ -33,6 +36,7 @@ PARTS = {
     "minimal": "fewest paths, then fewest places",
 }
 OPTIMIZING = {"genus", "minimal"}
+PRUNING = ("planar", "perpendicular")  # what has them has had them after each step
 FORMS = {"fast": ENCODINGS / "fast", "plain": ENCODINGS}
 
 Answer = TypeVar("Answer")
@@ -140,6 +144,115 @@ class Watch:
             self.bar.close()
 
 
+class Program:
+    """A query's program, grounded when it is first solved."""
+
+    def __init__(self, experience: Experience, query: Query):
+        self.asked = experience, query
+        self.control = query.control(experience.facts())
+        self._grounded = False
+
+    def solve(
+        self,
+        cube: Cube,
+        more: Sequence[tuple[clingo.Symbol, bool]] = (),
+        on_model: Callable[[clingo.Model], bool] | None = None,
+    ) -> None:
+        """Solve it, with the hypotheses that begin with a cube as the only ones."""
+        if not self._grounded:
+            self.control.ground()
+            self._grounded = True
+        self.control.solve([*_assumed(cube), *more], on_model=on_model)
+
+    def keep(self) -> None:
+        """Have it at hand, with what it has learnt, if this thread asks for it again."""
+        if not self.asked[1].optimizes:
+            _last.program = self
+
+    def models(self) -> int:
+        """How many answers the last call had (best ones, if the query minimises)."""
+        which = "optimal" if self.asked[1].optimizes else "enumerated"
+        return int(self.control.statistics["summary"]["models"][which])
+
+
+class _Last(threading.local):
+    """The program that each thread has kept."""
+
+    program: Program | None = None
+
+
+_last = _Last()
+
+
+def _program(experience: Experience, query: Query) -> Program:
+    """The program of a query: the one that was kept, or a new one."""
+    _prepare()
+    program, _last.program = _last.program, None
+    if program is None or program.asked != (experience, query):
+        program = None  # its memory is free before there is another
+        try:
+            program = Program(experience, query)
+        except MemoryError:
+            raise Stopped(MEMORY) from None
+    return program
+
+
+def _in_thread(
+    program: Program, watch: Watch, work: Callable[[Callable[[Any], bool]], None]
+) -> Iterator[Any]:
+    """What ``work`` puts, in a thread of its own; what it puts last is False if it is to
+    end. Raises Stopped at the time limit, or out of memory."""
+    found: queue.Queue[Any] = queue.Queue(maxsize=1000)
+    stop = threading.Event()
+
+    def put(item: Any) -> bool:
+        while not stop.is_set():
+            try:
+                found.put(item, timeout=0.1)
+                break
+            except queue.Full:
+                continue
+        return not stop.is_set()
+
+    def run() -> None:
+        try:
+            _prepare()
+            work(put)
+            put(StopIteration())
+        except Exception as error:  # raised again in the caller's thread
+            put(error)
+
+    thread = threading.Thread(target=run, daemon=True)
+    try:
+        thread.start()
+    except RuntimeError:  # there is no room for its stack
+        raise Stopped(MEMORY) from None
+    ended = False
+    try:
+        while True:
+            try:
+                item = found.get(timeout=0.1)
+            except queue.Empty:
+                watch.tick()
+                continue
+            if isinstance(item, StopIteration):
+                ended = True
+                return
+            if isinstance(item, MemoryError):
+                raise Stopped(MEMORY)
+            if isinstance(item, Exception):
+                raise item
+            watch.tick()
+            yield item
+    finally:
+        stop.set()
+        if ended:
+            program.keep()
+        else:
+            program.control.interrupt()  # clingo heeds it as soon as it has grounded
+        thread.join(timeout=0.5)
+
+
 def answers(
     experience: Experience,
     query: Query,
@@ -150,76 +263,39 @@ def answers(
     """What ``read`` makes of each model, in the solver's order; a model of which it makes
     None is passed over. With ``cubes``, the models that begin with the first of them, then
     a None, and so on. Raises Stopped at the time limit, or out of memory."""
-    found: queue.Queue[Answer | Exception | None] = queue.Queue(maxsize=1000)
-    stop = threading.Event()
+    program = _program(experience, query)
 
-    def put(item: Answer | Exception | None) -> None:
-        while not stop.is_set():
-            try:
-                return found.put(item, timeout=0.1)
-            except queue.Full:
-                continue
+    def work(put: Callable[[Any], bool]) -> None:
+        going = True
 
-    def take(model: clingo.Model) -> bool:
-        watch.found += 1
-        answer = read(model)
-        if answer is not None:
-            put(answer)
-        return not stop.is_set()
+        def take(model: clingo.Model) -> bool:
+            nonlocal going
+            watch.found += 1
+            answer = read(model)
+            if answer is not None:
+                going = put(answer)
+            return going
 
-    def work() -> None:
-        try:
-            _prepare()
-            control.ground()
-            for cube in [()] if cubes is None else cubes:
-                if not stop.is_set():
-                    control.solve(_assumed(cube), on_model=take)
-                    if cubes is not None:
-                        put(None)
-            put(StopIteration())
-        except Exception as error:  # raised again in the caller's thread
-            put(error)
+        for cube in [()] if cubes is None else cubes:
+            program.solve(cube, on_model=take)
+            if cubes is not None:
+                going = going and put(None)
+            if not going:
+                break
 
-    _prepare()
-    thread = threading.Thread(target=work, daemon=True)
-    try:
-        control = query.control(experience.facts())
-    except MemoryError:
-        raise Stopped(MEMORY) from None
-    try:
-        thread.start()
-    except RuntimeError:  # there is no room for its stack
-        raise Stopped(MEMORY) from None
-    try:
-        while True:
-            try:
-                item = found.get(timeout=0.1)
-            except queue.Empty:
-                watch.tick()
-                continue
-            if isinstance(item, StopIteration):
-                return
-            if isinstance(item, MemoryError):
-                raise Stopped(MEMORY)
-            if isinstance(item, Exception):
-                raise item
-            watch.tick()
-            yield item
-    finally:
-        stop.set()
-        control.interrupt()  # clingo heeds it as soon as it has grounded
-        thread.join(timeout=0.5)
+    return _in_thread(program, watch, work)
 
 
-def demand_level(experience: Experience, query: Query, watch: Watch, cubes: Sequence[Cube]) -> None:
-    """Demand that these are the hypotheses that clingo has after so many steps, so that no
-    answer depends on how the search has parted the tree."""
-    pruning = query.parts & {"planar", "perpendicular"}
-    level = replace(query, parts=frozenset(pruning), horizon=len(cubes[0]) - 1)
-    known = watch.found
-    found = [found.at for found in hypotheses(experience, level, watch) if found]
-    if sorted(found) != sorted(cubes):
-        raise RuntimeError(f"clingo and the search differ after step {level.horizon}")
+def demand_cover(
+    experience: Experience, query: Query, watch: Watch, cubes: Sequence[Cube], step: int
+) -> None:
+    """Demand of clingo that each hypothesis after a step begins with just one of the cubes,
+    so that no answer depends on how the search has parted the tree."""
+    level = replace(query, parts=query.parts & set(PRUNING), horizon=step)
+    known, parted = watch.found, set(cubes)
+    for found in hypotheses(experience, level, watch):
+        if found and sum(found.at[:size] in parted for size in range(1, step + 2)) != 1:
+            raise RuntimeError(f"clingo and the search differ by step {step}")
     watch.found = known
 
 
@@ -228,6 +304,13 @@ def _assumed(cube: Cube) -> list[tuple[clingo.Symbol, bool]]:
         (clingo.Function("at", [clingo.Number(number) for number in (step, *dstate)]), True)
         for step, dstate in enumerate(cube)
     ]
+
+
+@cache
+def digest() -> str:
+    """What tells the program and its encodings from other ones."""
+    texts = [path.read_bytes() for path in sorted(ENCODINGS.rglob("*.lp"))]
+    return hashlib.sha256(b"".join([__version__.encode(), *texts])).hexdigest()
 
 
 def _prepare() -> None:
@@ -290,24 +373,36 @@ def best(
 
 
 def count(
-    experience: Experience, query: Query, watch: Watch, cubes: Iterable[Cube] = ((),)
-) -> Iterator[tuple[int, int]]:
-    """For each cube, how many hypotheses begin with it (best ones, if the query minimises),
-    and how many of these have a last step that added a link (or have no step)."""
+    experience: Experience,
+    query: Query,
+    cube: Cube = (),
+    watch: Watch | None = None,
+    grown: bool = True,
+) -> tuple[int, int]:
+    """How many hypotheses begin with a cube (best ones, if the query minimises), and, if
+    asked for, how many of these have a last step that added a link (or have no step).
+
+    clingo counts, and no answer comes to Python; each is met once, also where those that
+    have grown are counted apart. Without a watch it is counted in the caller's thread."""
+    program = _program(experience, query)
     last = experience.steps if query.horizon is None else min(query.horizon, experience.steps)
     fresh = clingo.Function("fresh", [clingo.Number(last)])
-    counts: list[list[int]] = []
+    counts: list[int] = []
 
-    def begun() -> Iterator[Cube]:
-        for cube in cubes:
-            counts.append([0, 0])
-            yield cube
+    def work(put: Callable[[Any], bool]) -> None:
+        for more in [[(fresh, True)], [(fresh, False)]] if grown and last else [[]]:
+            program.solve(cube, more)
+            counts.append(program.models())
+            if not put(counts[-1]):
+                break
 
-    def read(model: clingo.Model) -> None:
-        if model.optimality_proven or not query.optimizes:
-            counts[-1][0] += 1
-            counts[-1][1] += last == 0 or model.contains(fresh)
-
-    for number, _ in enumerate(answers(experience, query, watch, read, begun())):
-        total, grown = counts[number]
-        yield total, grown
+    if watch is None:
+        try:
+            work(lambda _: True)
+            program.keep()
+        except MemoryError:
+            raise Stopped(MEMORY) from None
+    else:
+        for number in _in_thread(program, watch, work):
+            watch.found += number
+    return sum(counts), counts[0] if grown else 0

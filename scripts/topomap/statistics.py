@@ -1,18 +1,19 @@
 """The figures of the search tree (the paper, Figure 4), by clingo and by search."""
 
-import signal
 from collections.abc import Iterator
 from dataclasses import asdict, dataclass, field, replace
 from functools import partial
-from multiprocessing import TimeoutError, get_context
+from itertools import islice
 from typing import Any
 
+from topomap import search
 from topomap.experience import Experience
 from topomap.hypothesis import Hypothesis
 from topomap.journal import Journal
-from topomap.search import breadth_first, cubes, depth_first, root
-from topomap.solver import Cube, Query, Watch, count, demand_level
+from topomap.share import ALONE, Crew
+from topomap.solver import PRUNING, Cube, Query, Watch, count, demand_cover
 
+LARGE = 10_000  # a tree with a level of more hypotheses is counted cube by cube
 KEYS = ("nodes", "maps", "final", "closed", "closed_text", "optimal", "perpendicular")
 FINAL = {
     "closed": ("travelled",),
@@ -23,7 +24,12 @@ FINAL = {
 
 
 def tree(
-    experience: Experience, query: Query, watch: Watch, journal: Journal, result: dict[str, Any]
+    experience: Experience,
+    query: Query,
+    watch: Watch,
+    journal: Journal,
+    result: dict[str, Any],
+    crew: Crew = ALONE,
 ) -> None:
     """Fill in ``result``, by clingo alone (semantics: "What Figure 4 counts"):
 
@@ -37,32 +43,58 @@ def tree(
     counted cube by cube, each a unit of the journal.
     """
 
-    def total(query: Query, cubes: list[Cube]) -> tuple[int, int]:
-        pairs = journal.known(len(cubes))
-        if left := cubes[len(pairs) :]:
-            for pair in count(experience, query, watch, left):
-                journal.keep(pair)
-                pairs.append(pair)
-        return sum(pair[0] for pair in pairs), sum(pair[1] for pair in pairs)
+    def counted(units: list[Unit]) -> Iterator[tuple[int, int]]:
+        known = journal.known(len(units))
+        yield from known
+        found = watch.found
+        for pair in crew.each(partial(_counted, experience), units[len(known) :], watch):
+            journal.keep(pair)
+            watch.found = found = found + pair[0]
+            yield pair
 
     result.update(dict.fromkeys(KEYS), per_step=[])
-    whole: list[Cube] = [()]
-    parts = cubes(experience, query)
-    demand_level(experience, query, watch, parts)
+    monotone = query.parts <= set(PRUNING)
     last = experience.steps if query.horizon is None else min(query.horizon, experience.steps)
-    nodes = maps = 0
+    parts: list[Cube] = [()]
+    cubes: list[Cube] = []  # to come in its place, at a step
+    depth = 0
+    maps = 0
     for step in range(last + 1):
         watch.title(f"step {step} of {last}")
+        if not cubes and (not monotone or max(result["per_step"], default=0) > LARGE):
+            cubes, depth = search.cubes(experience, query)
+        if cubes and step >= depth:
+            demand_cover(experience, query, watch, cubes, depth)
+            parts, depth = cubes, last + 1
         at_step = replace(query, horizon=step)
-        final, grown = total(at_step, whole if step < len(parts[0]) else parts)
-        result["per_step"].append(final)
-        nodes += final
-        maps += grown
-    result.update(nodes=nodes, maps=maps, final=final)
-    for key, properties in FINAL.items():
+        pairs = list(counted([(at_step, cube, True) for cube in parts]))
+        result["per_step"].append(sum(total for total, _ in pairs))
+        maps += sum(grown for _, grown in pairs)
+        if monotone:
+            parts = [cube for cube, (total, _) in zip(parts, pairs, strict=True) if total]
+    result.update(nodes=sum(result["per_step"]), maps=maps, final=result["per_step"][-1])
+    asked = {key: query.having(*properties) for key, properties in FINAL.items()}
+    cubes_of = {key: [()] if asked[key].optimizes else parts for key in asked}
+    pairs_of = counted([(asked[key], cube, False) for key in asked for cube in cubes_of[key]])
+    for key in asked:
         watch.title(f"{key} maps")
-        asked = query.having(*properties)
-        result[key], _ = total(asked, whole if asked.optimizes else parts)
+        result[key] = sum(total for total, _ in islice(pairs_of, len(cubes_of[key])))
+
+
+def final_maps(experience: Experience, query: Query, watch: Watch, crew: Crew) -> int:
+    """The hypotheses after the last step, by clingo."""
+    parts, depth = search.cubes(experience, query)
+    demand_cover(experience, query, watch, parts, depth)
+    units = [(query, cube, False) for cube in parts]
+    return sum(total for total, _ in crew.each(partial(_counted, experience), units, watch))
+
+
+Unit = tuple[Query, Cube, bool]
+
+
+def _counted(experience: Experience, unit: Unit, watch: Watch | None) -> tuple[int, int]:
+    query, cube, grown = unit
+    return count(experience, query, cube, watch, grown)
 
 
 @dataclass
@@ -124,21 +156,19 @@ class Tally:
 
 
 def searched(
-    experience: Experience, query: Query, watch: Watch, journal: Journal, jobs: int = 1
+    experience: Experience, query: Query, watch: Watch, journal: Journal, crew: Crew = ALONE
 ) -> Tally:
     """The figures of the tree by depth-first search: of its top, and of the parts below it,
-    each a unit of the journal, shared out among so many processes."""
-    parts = cubes(experience, query, 16 * 64)
-    node = root(experience, query)
+    each a unit of the journal."""
+    parts, _ = search.cubes(experience, query, 256)
+    node = search.root(experience, query)
     tally = Tally(node.experience.steps)
-    for _ in breadth_first(node, watch):
-        if len(node.at) == len(parts[0]):
-            break
+    for _ in search.top(node, set(parts)):
         tally.add(node)
     known = [Tally(**value) for value in journal.known(len(parts))]
     for done in known:
         tally.merge(done)
-    for done in _shared(experience, query, watch, parts[len(known) :], jobs):
+    for done in crew.each(partial(_part, experience, query), parts[len(known) :], watch):
         journal.keep(asdict(done))
         tally.merge(done)
         watch.found = tally.per_step[-1]
@@ -146,35 +176,11 @@ def searched(
     return tally
 
 
-def _part(experience: Experience, query: Query, cube: Cube, watch: Watch | None = None) -> Tally:
+def _part(experience: Experience, query: Query, cube: Cube, watch: Watch | None) -> Tally:
     """The figures of the tree from a node down."""
-    node = root(experience, query)
+    node = search.root(experience, query)
     node.goto(cube)
     tally = Tally(node.experience.steps)
-    for _ in depth_first(node, watch):
+    for _ in search.depth_first(node, watch):
         tally.add(node)
     return tally
-
-
-def _shared(
-    experience: Experience, query: Query, watch: Watch, parts: list[Cube], jobs: int
-) -> Iterator[Tally]:
-    """The figures of each part, in order."""
-    if jobs == 1:
-        yield from (_part(experience, query, cube, watch) for cube in parts)
-        return
-    with get_context("spawn").Pool(jobs, _heed_the_parent) as pool:
-        tallies = pool.imap(partial(_part, experience, query), parts)
-        for _ in parts:
-            while True:
-                try:
-                    yield tallies.next(timeout=0.5)
-                    break
-                except TimeoutError:
-                    watch.tick()
-
-
-def _heed_the_parent() -> None:
-    """In a worker: end when the pool is ended, not by Ctrl-C in the terminal."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-    signal.signal(signal.SIGTERM, signal.SIG_DFL)
