@@ -10,6 +10,7 @@ import argparse
 import os
 import platform
 import random
+import re
 import resource
 import signal
 import sys
@@ -42,7 +43,8 @@ Written by `make mutate`, with clingo {clingo} and Python {python}.
 A mutant is an encoding changed in one place: a statement removed; a literal of a body or of a
 condition dropped; one negated, or a comparison turned into its complement; a number made one
 greater or one less. Mutants that read the same are one. Each is asked the queries of
-`tests/corpus.py` that load it, whose answers are known without the encodings. It is *killed*
+`tests/corpus.py` that load it, whose answers are known without the encodings: those in
+`fast/` the ones that load `fast/topomap.lp`, the others those that do not. It is *killed*
 when one gives other answers (other models, shown atoms or costs, or a model twice), *refused*
 when clingo has an error or a message for it, *endless* when a query takes more than {seconds}
 seconds of the processor or {memory} MiB of memory. When all answers are right, it is
@@ -56,6 +58,9 @@ COMPLEMENT = {
 }
 COMPLEMENT |= {other: one for one, other in COMPLEMENT.items()}
 
+
+INCLUDE = re.compile(r'^#include "(.+)\.lp"\.', re.MULTILINE)
+FAST = "fast/"
 
 Key = tuple[str, str, str]  # the file, the rule and the change of a mutant
 
@@ -87,6 +92,30 @@ def statements(folder: Path, file: str) -> list[ast.AST]:
     ast.parse_string(text, found.append)
     left_out = (ast.ASTType.Comment, ast.ASTType.Program)
     return [statement for statement in found if statement.ast_type not in left_out]
+
+
+def closure(folder: Path, files: tuple[str, ...]) -> tuple[str, ...]:
+    """These encodings and all that they include."""
+    found: list[str] = []
+    waiting = [*files]
+    while waiting:
+        if (file := waiting.pop()) not in found:
+            found.append(file)
+            text = (folder / f"{file}.lp").read_text(encoding="utf-8")
+            names = (Path(file).parent / name for name in INCLUDE.findall(text))
+            waiting += [os.path.normpath(name) for name in names]
+    return tuple(found)
+
+
+def sets(folder: Path, asked: list[Query]) -> dict[tuple[str, ...], tuple[str, ...]]:
+    """What is loaded by each set of files that a query names."""
+    return {files: closure(folder, files) for files in {query.files for query in asked}}
+
+
+def tries(files: tuple[str, ...], loaded: tuple[str, ...], file: str) -> bool:
+    """Whether queries of these files are for trying this one: they load it, and are of its
+    form."""
+    return file in loaded and file.startswith(FAST) == files[0].startswith(FAST)
 
 
 def mutants(folder: Path, file: str) -> list[Mutant]:
@@ -150,41 +179,41 @@ def negated(literal: ast.AST) -> ast.AST:
     return literal.update(sign=sign)
 
 
-def tried(program: dict[str, str], query: Query) -> str:
+def tried(program: str, query: Query) -> str:
     """The fate of a program at a query: refused if clingo has a message or an error."""
     messages: list[str] = []
     arguments = ["0", *query.arguments]
     control = clingo.Control(arguments, logger=lambda _, text: messages.append(text))
     try:
-        control.add("base", [], "\n".join(program[file] for file in query.files))
+        control.add("base", [], program)
         control.add("base", [], query.facts)
         control.ground([("base", [])])
     except RuntimeError:
         return "refused"
     if messages:
         return "refused"
-    wanted = {(query.cost, answer) for answer in query.answers}
+    optimal = "--opt-mode=optN" in query.arguments
     found = []
 
     def read(model: clingo.Model) -> bool:
-        if query.cost and not model.optimality_proven:
+        if optimal and not model.optimality_proven:
             return True
         found.append((tuple(model.cost), frozenset(map(str, model.symbols(shown=True)))))
-        return found[-1] in wanted and len(found) <= len(wanted)
+        return found[-1] in query.answers and len(found) <= len(query.answers)
 
     control.solve(on_model=read)
-    right = len(found) == len(wanted) and set(found) == wanted
+    right = len(found) == len(query.answers) and set(found) == query.answers
     return "survived" if right else "killed"
 
 
-def suffer(program: dict[str, str], asked: list[Query]) -> str:
-    """The fate of a program at the first query that it does not survive. A query that
-    takes too long ends the process."""
+def suffer(programs: dict[tuple[str, ...], str], asked: list[Query]) -> str:
+    """The fate of a mutant, in programs by the files of a query, at the first query that it
+    does not survive. A query that takes too long ends the process."""
     resource.setrlimit(resource.RLIMIT_AS, (BYTES, BYTES))
     for query in asked:
         signal.setitimer(signal.ITIMER_PROF, SECONDS)
         try:
-            fate = tried(program, query)
+            fate = tried(programs[query.files], query)
         except MemoryError:
             return "endless"
         if fate != "survived":
@@ -196,7 +225,8 @@ def fates(
     folder: Path, chosen: list[Mutant], asked: list[Query], jobs: int
 ) -> Iterator[tuple[Mutant, str]]:
     """The fate of each mutant, as they come, each in a process of its own."""
-    names = {mutant.file for mutant in chosen}.union(*(query.files for query in asked))
+    loaded = sets(folder, asked)
+    names = set().union(*loaded.values())
     texts = {file: list(map(str, statements(folder, file))) for file in names}
     waiting = list(reversed(chosen))
     running: dict[int, Mutant] = {}
@@ -210,9 +240,13 @@ def fates(
                 code = len(FATES)
                 try:
                     texts[mutant.file][mutant.number] = mutant.text
-                    program = {file: "\n".join(text) for file, text in texts.items()}
-                    mine = [query for query in asked if mutant.file in query.files]
-                    code = FATES.index(suffer(program, mine))
+                    programs = {
+                        files: "\n".join(text for file in every for text in texts[file])
+                        for files, every in loaded.items()
+                        if tries(files, every, mutant.file)
+                    }
+                    mine = [query for query in asked if query.files in programs]
+                    code = FATES.index(suffer(programs, mine))
                 finally:
                     os._exit(code)
             child, status = os.wait()
@@ -250,6 +284,8 @@ def report(fate: dict[Mutant, str], reasons: dict[Key, str]) -> str:
         return f"| {name} | {' | '.join(map(str, [*numbers, proved]))} |"
 
     rows = [row(f"`{file}.lp`", list(group)) for file, group in groupby(fate, lambda m: m.file)]
+    for name, fast in ("all but `fast/`", False), ("all of `fast/`", True):
+        rows.append(row(name, [mutant for mutant in fate if mutant.file.startswith(FAST) == fast]))
     lines = [
         HEAD.format(
             clingo=clingo.__version__,
@@ -304,14 +340,17 @@ def main(
     parser.add_argument("--report", type=Path, default=REPORT, help="the file to write")
     parser.add_argument("files", nargs="*", help="try only these, as theory/links; no report")
     options = parser.parse_args(argv)
-    names = sorted(str(path.relative_to(folder))[:-3] for path in folder.rglob("*.lp"))
+    names = [str(path.relative_to(folder))[:-3] for path in folder.rglob("*.lp")]
+    names.sort(key=lambda file: (file.startswith(FAST), file))
     try:
         if unknown := set(options.files) - set(names):
             raise InputError(f"{', '.join(sorted(unknown))}: no such encoding")
-        if untried := set(names).difference(*(query.files for query in asked())):
-            raise InputError(f"{', '.join(sorted(untried))}: no query in tests/corpus.py loads it")
         reasons = listed(options.listed)
         everyone = [mutant for file in names for mutant in mutants(folder, file)]
+        loaded = sets(folder, asked()).items()
+        for file in {mutant.file: None for mutant in everyone}:
+            if not any(tries(files, every, file) for files, every in loaded):
+                raise InputError(f"{file}: no query in tests/corpus.py loads it")
         chosen = [mutant for mutant in everyone if mutant.file in (options.files or names)]
         if options.sample:
             chosen = [mutant for mutant in chosen if mutant.key not in reasons]

@@ -3,7 +3,7 @@
 import mutate
 import pytest
 from conftest import ENCODINGS
-from corpus import Query, queries
+from corpus import Query, queries, shown
 
 RULES = """
 p(X) :- q(X,1), not r(X).
@@ -55,7 +55,7 @@ MUTANTS = {
 # A program with mutants that are killed, refused and endless, and an equivalent one.
 COUNTER = "% Count.\nn(0).\nn(X+1) :- n(X), X < limit.\n#show n/1.\n"
 ASKED = [
-    Query(("counter",), "", frozenset({frozenset({"n(0)", "n(1)"})}), ("-c", "limit=1")),
+    Query(("counter",), "", shown("n(0)", "n(1)"), ("-c", "limit=1")),
 ]
 EQUIVALENT = ("counter", "#show n/1.", "remove")
 KILLED = ("counter", "n(0).", "n(0) -> n(1)")
