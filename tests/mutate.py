@@ -84,6 +84,12 @@ class Mutant:
         return " | ".join(self.key)
 
 
+def named_files(folder: Path) -> list[str]:
+    """The encodings under a folder, the fast ones last."""
+    names = (str(path.relative_to(folder))[:-3] for path in folder.rglob("*.lp"))
+    return sorted(names, key=lambda file: (file.startswith(FAST), file))
+
+
 def statements(folder: Path, file: str) -> list[ast.AST]:
     """The statements of an encoding, without its includes and comments."""
     lines = (folder / f"{file}.lp").read_text(encoding="utf-8").splitlines()
@@ -340,8 +346,7 @@ def main(
     parser.add_argument("--report", type=Path, default=REPORT, help="the file to write")
     parser.add_argument("files", nargs="*", help="try only these, as theory/links; no report")
     options = parser.parse_args(argv)
-    names = [str(path.relative_to(folder))[:-3] for path in folder.rglob("*.lp")]
-    names.sort(key=lambda file: (file.startswith(FAST), file))
+    names = named_files(folder)
     try:
         if unknown := set(options.files) - set(names):
             raise InputError(f"{', '.join(sorted(unknown))}: no such encoding")
