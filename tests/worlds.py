@@ -101,9 +101,7 @@ WORLDS = {
     "eight ways: all alike": walked(
         8, "a0 b4 b0 c4 c0 a4 a1 b5 b1 c5 c1 a5 a3 b7 b3 c7 c3 a7", "a1", "0 1 3 4 7"
     ),
-    "twelve ways: all alike": walked(
-        12, "a0 b6 b0 a6 a1 b7 b1 a7 a4 b10 b4 a10", "a0", "0 1 4 7"
-    ),
+    "twelve ways: all alike": walked(12, "a0 b6 b0 a6 a1 b7 b1 a7 a4 b10 b4 a10", "a0", "0 1 4 7"),
     "twelve ways": walked(12, STAR12 + " a3 b9", "a3", "3 1 0 6 1 7 11 5 6 3"),
     # Dead ends and ways back.
     "dead ends of a comb": walked(4, COMB, "a1", "1 0 2 1 0 2 1 0 2 3 3 3"),
