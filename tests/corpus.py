@@ -83,6 +83,21 @@ EXPERIENCES = {
         "3: 0 1",
         "1: 0 2 3",
     ),
+    # Planarity goes by what lies beyond a gateway by which a place, which is new for sure, was
+    # first reached.
+    "beyond": seen(
+        "0",
+        "0: 0 1 2 4 6",
+        "6: 0 2",
+        "2: 0 1 2 4 6",
+        "6: 0 1 2 3",
+        "3: 0 1 3 5 7",
+        "5: 0 1 2 3",
+        "0: 0 2 3 4 6",
+        "4: 0 4",
+        "4: 0 2 4 5 6",
+        slots=8,
+    ),
     "star": seen("0 1 2", "0: 0", "0: 0 1 2", "1: 0", "0: 0 1 5", "1: 0", "0: 0 4 5", slots=6),
 }
 
@@ -158,6 +173,12 @@ def hypotheses(facts: str, arguments: tuple[str, ...], truth: Truth) -> Iterator
     yield from least(("boundary", "minimal"), fewest, truth.having("boundary"))
     yield from least(("genus",), genus, truth.final)
     yield from least(("genus", "minimal"), both, truth.final)
+
+
+def sizes() -> list[Query]:
+    """What the size of the fast encodings is taken by: each experience with all the parts."""
+    files = tuple(f"fast/{part}" for part in ("topomap", "bound", *PARTS, "genus", "minimal"))
+    return [Query(files, seen.facts(), frozenset()) for seen in (EXPERIENCES | WORLDS).values()]
 
 
 def check() -> Iterator[Query]:

@@ -24,7 +24,7 @@ from pathlib import Path
 import clingo
 from clingo import ast
 from conftest import ENCODINGS, ROOT
-from corpus import Query, queries
+from corpus import Query, queries, sizes
 from topomap.errors import InputError
 from topomap.experience import LARGEST
 from topomap.files import output
@@ -33,7 +33,7 @@ from tqdm import tqdm
 LISTED = ROOT / "tests/equivalent.toml"
 REPORT = ROOT / "docs/mutation.md"
 KINDS = ("remove", "drop", "negate", "shift")
-FATES = ("survived", "killed", "refused", "endless")
+FATES = ("survived", "killed", "refused", "endless", "larger")
 SECONDS = 5  # of the processor, for one query: the encodings take milliseconds
 BYTES = 2 << 30
 HEAD = """# Rule mutation
@@ -47,9 +47,10 @@ greater or one less. Mutants that read the same are one. Each is asked the queri
 `fast/` the ones that load `fast/topomap.lp`, the others those that do not. It is *killed*
 when one gives other answers (other models, shown atoms or costs, or a model twice), *refused*
 when clingo has an error or a message for it, *endless* when a query takes more than {seconds}
-seconds of the processor or {memory} MiB of memory. When all answers are right, it is
-*equivalent* if `tests/equivalent.toml` says why, and has *survived* if not. Comments and
-`#include` are not mutated.
+seconds of the processor or {memory} MiB of memory. When all answers are right, a mutant of
+`fast/`, whose worth is in its size, is *larger* if it grounds to more rules, over all named
+experiences with all the parts. Another one is *equivalent* if `tests/equivalent.toml` says
+why, and has *survived* if not. Comments and `#include` are not mutated.
 """
 COMPLEMENT = {
     ast.ComparisonOperator.Equal: ast.ComparisonOperator.NotEqual,
@@ -212,6 +213,18 @@ def tried(program: str, query: Query) -> str:
     return "survived" if right else "killed"
 
 
+def rules(programs: dict[tuple[str, ...], str], measured: list[Query]) -> int:
+    """How many rules these programs ground to."""
+    total = 0
+    for query in measured:
+        control = clingo.Control(["1", "--opt-mode=ignore"])
+        control.add("base", [], programs[query.files] + query.facts)
+        control.ground([("base", [])])
+        control.solve()
+        total += int(control.statistics["problem"]["lp"]["rules"])
+    return total
+
+
 def suffer(programs: dict[tuple[str, ...], str], asked: list[Query]) -> str:
     """The fate of a mutant, in programs by the files of a query, at the first query that it
     does not survive. A query that takes too long ends the process."""
@@ -228,12 +241,22 @@ def suffer(programs: dict[tuple[str, ...], str], asked: list[Query]) -> str:
 
 
 def fates(
-    folder: Path, chosen: list[Mutant], asked: list[Query], jobs: int
+    folder: Path, chosen: list[Mutant], asked: list[Query], measured: list[Query], jobs: int
 ) -> Iterator[tuple[Mutant, str]]:
     """The fate of each mutant, as they come, each in a process of its own."""
-    loaded = sets(folder, asked)
+    loaded = sets(folder, asked + measured)
     names = set().union(*loaded.values())
     texts = {file: list(map(str, statements(folder, file))) for file in names}
+
+    def programs(file: str) -> dict[tuple[str, ...], str]:
+        return {
+            files: "\n".join(text for name in every for text in texts[name])
+            for files, every in loaded.items()
+            if tries(files, every, file)
+        }
+
+    fast = any(mutant.file.startswith(FAST) for mutant in chosen)
+    least = rules(programs(f"{FAST}topomap"), measured) if fast else 0
     waiting = list(reversed(chosen))
     running: dict[int, Mutant] = {}
     try:
@@ -246,13 +269,12 @@ def fates(
                 code = len(FATES)
                 try:
                     texts[mutant.file][mutant.number] = mutant.text
-                    programs = {
-                        files: "\n".join(text for file in every for text in texts[file])
-                        for files, every in loaded.items()
-                        if tries(files, every, mutant.file)
-                    }
-                    mine = [query for query in asked if query.files in programs]
-                    code = FATES.index(suffer(programs, mine))
+                    mutated = programs(mutant.file)
+                    fate = suffer(mutated, [query for query in asked if query.files in mutated])
+                    if fate == "survived" and mutant.file.startswith(FAST):
+                        signal.setitimer(signal.ITIMER_PROF, SECONDS * len(measured))
+                        fate = "larger" if rules(mutated, measured) > least else fate
+                    code = FATES.index(fate)
                 finally:
                     os._exit(code)
             child, status = os.wait()
@@ -337,6 +359,7 @@ def main(
     argv: list[str] | None = None,
     folder: Path = ENCODINGS,
     asked: Callable[[], list[Query]] = queries,
+    measured: Callable[[], list[Query]] = sizes,
 ) -> int:
     parser = argparse.ArgumentParser(description="Try the mutants of the encodings.")
     parser.add_argument("-j", "--jobs", type=count, default=1, help="processes")
@@ -353,14 +376,14 @@ def main(
         reasons = listed(options.listed)
         everyone = [mutant for file in names for mutant in mutants(folder, file)]
         loaded = sets(folder, asked()).items()
-        for file in {mutant.file: None for mutant in everyone}:
+        for file in dict.fromkeys(mutant.file for mutant in everyone):
             if not any(tries(files, every, file) for files, every in loaded):
                 raise InputError(f"{file}: no query in tests/corpus.py loads it")
         chosen = [mutant for mutant in everyone if mutant.file in (options.files or names)]
         if options.sample:
             chosen = [mutant for mutant in chosen if mutant.key not in reasons]
             chosen = random.Random(options.seed).sample(chosen, min(options.sample, len(chosen)))
-        trials = fates(folder, chosen, asked(), options.jobs)
+        trials = fates(folder, chosen, asked(), measured(), options.jobs)
         ends = dict(tqdm(trials, "mutants", len(chosen), disable=None))
         fate = {mutant: ends[mutant] for mutant in chosen}
         if not (options.files or options.sample):
