@@ -142,11 +142,11 @@ def hypotheses(facts: str, arguments: tuple[str, ...], truth: Truth) -> Iterator
     """What is asked of one experience, of each form of the encodings: all hypotheses, those
     of each part, what each costs, and the best."""
 
+    def atoms(at):
+        return frozenset(f"at({t},{p},{s})" for t, (p, s) in enumerate(at))
+
     def query(parts, found, *more, cost=lambda h: ()):
-        answers = frozenset(
-            (cost(truth.final[at]), frozenset(f"at({t},{p},{s})" for t, (p, s) in enumerate(at)))
-            for at in found
-        )
+        answers = frozenset((cost(truth.final[at]), atoms(at)) for at in found)
         for folder in FORMS.values():
             under = folder.relative_to(ENCODINGS)
             files = tuple(str(under / part) for part in ("topomap", *parts))
@@ -163,6 +163,15 @@ def hypotheses(facts: str, arguments: tuple[str, ...], truth: Truth) -> Iterator
 
     def both(h):
         return (h.genus(), *h.cost())
+
+    # The plain ones are also to say what euler/1 and genus/1 are.
+    figures = "#show euler/1. #show genus/1."
+    answers = frozenset(
+        ((), atoms(at) | {f"euler({h.euler()})", f"genus({h.genus()})"})
+        for at, h in truth.final.items()
+    )
+    ignore = (*arguments, "--opt-mode=ignore")
+    yield Query(("topomap", "genus"), facts + figures, answers, ignore)
 
     yield from query((), truth.final)
     for part in PARTS:
