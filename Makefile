@@ -3,7 +3,8 @@
 # make mutate     change each rule in turn, and write docs/mutation.md (JOBS: processes)
 # make lint       check style and types
 # make instances  make the batch that instances/batch.txt lists (try make -j2 instances)
-# make bench      time clingo against the search, and the memory of a million maps
+# make bench      time the encodings and the search, write docs/benchmark.md (half an hour;
+#                 BENCH: options, such as BENCH='--only 8x8', BENCH=--quick, BENCH=--help)
 # make beyond     count what is beyond the paper's table, docs/beyond.json (an hour)
 # make clean      remove what make made
 # make committed  make the committed instances again (MAPS: folder of the real maps)
@@ -60,7 +61,7 @@ GENERATE  := $(BIN)/topomap generate
 MANHATTAN := network $(MAPS)/manhattan.graphml --slots 4 --north 29 --route tour
 
 bench: $(SETUP)
-	$(BIN)/python tests/bench.py
+	cd tests && ../$(BIN)/python -m bench --networks $(abspath $(MAPS)) $(BENCH)
 
 beyond: $(SETUP)
 	$(BIN)/topomap table --beyond --resume --output docs/beyond.json

@@ -1,0 +1,142 @@
+"""Large maps in phases: what is certain is found by small programs first, so that the whole
+one grounds over what is left.
+
+All that is found holds in every closed and perpendicular map (and planar one, if that is
+asked), so the answers stay the same. ``encodings/fast/phases/`` has the programs:
+
+1. ``visits.lp``: which visits can be of one place, by pairs; settled while grounding.
+2. ``runs.lp``: which runs never cross and never lie on one path; a call for each pair.
+3. the theory without planarity: which visits are the first of their place; a call for each.
+4. the theory with planarity, on longer and longer beginnings of the exploration: at which
+   gateways a visit can be, in any map of the beginning (brave consequences).
+"""
+
+from collections.abc import Callable, Iterable, Iterator
+from pathlib import Path
+
+import clingo
+from clingo import Function, Number, Symbol
+
+from topomap.experience import Experience
+
+NEEDED = {"closed", "perpendicular"}
+LEAST = 90  # steps: shorter explorations are as soon done in one call
+TRY = 20  # conflicts for a question whose answer may be left open
+TRY_HARD = 20_000  # conflicts for one beginning
+STRIDE = 8  # steps, at least, from one beginning to the next
+
+Heed = Callable[[], None]  # called often; raises what ends the work
+
+
+def apply(experience: Experience, parts: Iterable[str]) -> bool:
+    """Whether the phases are for such a query."""
+    return experience.slots == 4 and experience.steps >= LEAST and set(parts) >= NEEDED
+
+
+def known(experience: Experience, folder: Path, planar: bool, heed: Heed) -> str:
+    """Facts for ``phases/topomap.lp`` that hold in every closed and perpendicular map.
+
+    ``folder`` has the fast encodings. The experience is cut at its horizon.
+    """
+    work = _Phases(experience.facts(), folder, heed)
+    work.visits()
+    work.runs()
+    work.new()
+    if planar:
+        work.beginnings(experience)
+    return work.facts()
+
+
+class _Phases:
+    def __init__(self, facts: str, folder: Path, heed: Heed):
+        self._facts, self._folder, self._heed = facts, folder, heed
+        self._pairs: list[Symbol] = []  # fits/3 and iff/6
+        self._found: list[Symbol] = []
+
+    def facts(self) -> str:
+        """All that was found."""
+        found = [Function("found", [symbol]) for symbol in self._found]
+        return "".join(f"{symbol}.\n" for symbol in [*self._pairs, *found])
+
+    def _grounded(self, *files: str, arguments: Iterable[str] = ()) -> clingo.Control:
+        self._heed()
+        control = clingo.Control([*arguments])
+        for file in files:
+            control.load(str(self._folder / f"{file}.lp"))
+        control.add("base", [], self._facts + self.facts())
+        control.ground()
+        self._heed()
+        return control
+
+    def visits(self) -> None:
+        control = self._grounded("phases/visits")
+        with control.solve(yield_=True) as models:
+            for model in models:
+                self._pairs = model.symbols(shown=True)
+
+    def runs(self) -> None:
+        control = self._grounded("phases/runs")
+        control.configuration.solve.solve_limit = str(TRY)
+        atoms = control.symbolic_atoms
+        through = sorted(atom.symbol.arguments[0] for atom in atoms.by_signature("through", 1))
+        possible: set[Symbol] = set()
+
+        def note(model: clingo.Model) -> None:
+            possible.update(model.symbols(shown=True))
+
+        for number, relation in enumerate(("joined", "grid")):
+            for pair in ((a, b) for a in through for b in through if a < b):
+                asked = Function(relation, pair)
+                if asked not in possible and self._refuted(control, asked, True, note):
+                    self._know("never", *pair, Number(number))
+
+    def new(self) -> None:
+        control = self._grounded("phases/topomap", "closed", "perpendicular")
+        control.configuration.solve.solve_limit = str(TRY)
+        for atom in list(control.symbolic_atoms.by_signature("new", 1)):
+            (visit,) = atom.symbol.arguments
+            if self._refuted(control, atom.symbol, True):
+                self._know("old", visit)
+            elif self._refuted(control, atom.symbol, False):
+                self._know("new", visit)
+
+    def _refuted(
+        self,
+        control: clingo.Control,
+        atom: Symbol,
+        value: bool,
+        note: Callable[[clingo.Model], None] | None = None,
+    ) -> bool:
+        self._heed()
+        return bool(control.solve([(atom, value)], on_model=note).unsatisfiable)
+
+    def _know(self, name: str, *arguments: Symbol) -> None:
+        self._found.append(Function(name, arguments))
+
+    def beginnings(self, experience: Experience) -> None:
+        new = {found.arguments[0].number for found in self._found if found.name == "new"}
+        start = next((step for step in range(experience.steps) if step not in new), 0)
+        for end in _ends(experience, start):
+            options = ["0", "--enum-mode=brave", "-c", f"horizon={end}"]
+            files = ("phases/topomap", "perpendicular", "planar")
+            control = self._grounded(*files, arguments=options)
+            control.configuration.solve.solve_limit = str(TRY_HARD)
+            asked = {atom.symbol for atom in control.symbolic_atoms.by_signature("at", 3)}
+            found: set[Symbol] = set()
+            with control.solve(yield_=True) as models:
+                for model in models:
+                    self._heed()
+                    found = set(model.symbols(shown=True))
+                if not models.get().exhausted:
+                    return  # later ones are larger
+            for atom in sorted(asked - found):
+                self._know("out", *atom.arguments)
+
+
+def _ends(experience: Experience, last: int) -> Iterator[int]:
+    """Steps after this one at which runs end, some way apart."""
+    for step, turn in enumerate(experience.turns):
+        if turn != experience.slots // 2 and step >= last + STRIDE:
+            yield step
+            last = step
+    yield experience.steps
