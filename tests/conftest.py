@@ -11,11 +11,10 @@ from pathlib import Path
 import clingo
 import pytest
 from oracle import Hypothesis, best, tree
-from topomap.solver import FORMS
+from topomap.solver import FORMS, OPTIMIZING
 
 ROOT = Path(__file__).resolve().parents[1]
 ENCODINGS = ROOT / "encodings"
-THEORY = ("experience", "places", "links", "paths", "crossings", "faces")
 PARTS = ("planar", "euler", "closed", "travelled", "boundary", "perpendicular")
 COLUMNS = json.loads((ROOT / "scripts/topomap/figure4.json").read_text())["columns"]
 SHARED = ROOT.parent / "shared" / "maps"
@@ -38,9 +37,16 @@ def answers(parts, facts, *arguments, encoding="plain"):
     """The set of hypotheses, as tuples of (place, gateway) by step, that stock clingo
     finds; with a preference among the parts, the best ones. Fails on any message of
     clingo and on an answer given twice."""
+    if OPTIMIZING & set(parts):
+        arguments = *arguments, "--opt-mode=optN"
+    return set(costs(parts, facts, *arguments, encoding=encoding))
+
+
+def costs(parts, facts, *arguments, encoding="plain"):
+    """The same with what each costs; with a preference, of all if a bound is an argument."""
     messages = []
-    optimize = {"minimal", "genus"} & set(parts)
-    options = ["0", *arguments] + (["--opt-mode=optN"] if optimize else [])
+    optimal = "--opt-mode=optN" in arguments
+    options = ["0", *arguments]
     control = clingo.Control(options, logger=lambda _, text: messages.append(text))
     for part in ("topomap", *parts):
         control.load(str(FORMS[encoding] / f"{part}.lp"))
@@ -49,16 +55,16 @@ def answers(parts, facts, *arguments, encoding="plain"):
     found = []
 
     def read(model):
-        if optimize and not model.optimality_proven:
+        if optimal and not model.optimality_proven:
             return
         at = sorted([a.number for a in s.arguments] for s in model.symbols(shown=True))
         assert [step for step, _, _ in at] == list(range(len(at)))
-        found.append(tuple((place, slot) for _, place, slot in at))
+        found.append((tuple((place, slot) for _, place, slot in at), tuple(model.cost)))
 
     control.solve(on_model=read)
     assert not messages, messages
-    assert len(found) == len(set(found))
-    return set(found)
+    assert len(found) == len(dict(found))
+    return dict(found)
 
 
 class Truth:

@@ -1,7 +1,8 @@
 """The queries that the encodings are tried with, each with its right answers: what
 make mutate runs on every mutant of an encoding.
 
-A suite is a function that yields queries; an encoding is tried with those that load it.
+A suite is a function that yields queries; an encoding is tried with those of its form that
+load it.
 """
 
 import random
@@ -9,11 +10,12 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cache
 
-from conftest import PARTS, THEORY, Truth
+from conftest import ENCODINGS, PARTS, Truth
 from flawed import DEMANDS, INSTANCES, by_hand, drawn
 from topomap.check import by_definition
 from topomap.experience import Experience
-from worlds import random_experience
+from topomap.solver import FORMS
+from worlds import WORLDS, random_experience
 
 
 def seen(*steps, slots=4):
@@ -81,6 +83,21 @@ EXPERIENCES = {
         "3: 0 1",
         "1: 0 2 3",
     ),
+    # Planarity goes by what lies beyond a gateway by which a place, which is new for sure, was
+    # first reached.
+    "beyond": seen(
+        "0",
+        "0: 0 1 2 4 6",
+        "6: 0 2",
+        "2: 0 1 2 4 6",
+        "6: 0 1 2 3",
+        "3: 0 1 3 5 7",
+        "5: 0 1 2 3",
+        "0: 0 2 3 4 6",
+        "4: 0 4",
+        "4: 0 2 4 5 6",
+        slots=8,
+    ),
     "star": seen("0 1 2", "0: 0", "0: 0 1 2", "1: 0", "0: 0 1 5", "1: 0", "0: 0 4 5", slots=6),
 }
 
@@ -90,22 +107,29 @@ EXPERIENCES = {
 DRAWN = [*((seed, 8, seed % 3) for seed in range(100)), (602, 14, 0), (2408, 12, 0)]
 
 
+Answers = frozenset[tuple[tuple[int, ...], frozenset[str]]]
+
+
 @dataclass(frozen=True)
 class Query:
-    """Encodings, by their names under encodings/, loaded with facts and arguments of
-    clingo; and the answers, each the set of the atoms that it shows. Of a query with a
-    cost, these are the optimal ones."""
+    """Encodings, by their names under encodings/, loaded with what they include, with facts
+    and with arguments of clingo; and the answers, each its cost and the atoms that it shows.
+    With --opt-mode=optN, these are the optimal ones."""
 
     files: tuple[str, ...]
     facts: str
-    answers: frozenset[frozenset[str]]
+    answers: Answers
     arguments: tuple[str, ...] = ()
-    cost: tuple[int, ...] = ()
+
+
+def shown(*atoms: str) -> Answers:
+    """The one answer that shows these atoms, and has no cost."""
+    return frozenset({((), frozenset(atoms))})
 
 
 def theory() -> Iterator[Query]:
     """Experiences, with the answers that the independent search gives."""
-    for experience in EXPERIENCES.values():
+    for experience in (EXPERIENCES | WORLDS).values():
         yield from hypotheses(experience.facts(), (), Truth(experience))
     for seed, most, after in DRAWN:
         experience = random_experience(random.Random(f"corpus {seed}"), most)
@@ -115,37 +139,55 @@ def theory() -> Iterator[Query]:
 
 
 def hypotheses(facts: str, arguments: tuple[str, ...], truth: Truth) -> Iterator[Query]:
-    """What is asked of one experience: all hypotheses, those of each part, and the best."""
+    """What is asked of one experience, of each form of the encodings: all hypotheses, those
+    of each part, what each costs, and the best."""
 
-    def query(parts, found, *more, added="", atoms=None, cost=()):
-        files = ("topomap", *(f"theory/{name}" for name in THEORY), *parts)
-        answers = [
-            frozenset(f"at({t},{p},{s})" for t, (p, s) in enumerate(at))
-            | (atoms(truth.final[at]) if atoms else frozenset())
-            for at in found
-        ]
-        return Query(files, facts + added, frozenset(answers), (*arguments, *more), cost)
+    def atoms(at):
+        return frozenset(f"at({t},{p},{s})" for t, (p, s) in enumerate(at))
 
-    def least(parts, key, found):
-        costs = {key(truth.final[at]) for at in found}
-        best = truth.least(key, found)
-        return query(parts, best, "--opt-mode=optN", cost=min(costs, default=()))
+    def query(parts, found, *more, cost=lambda h: ()):
+        answers = frozenset((cost(truth.final[at]), atoms(at)) for at in found)
+        for folder in FORMS.values():
+            under = folder.relative_to(ENCODINGS)
+            files = tuple(str(under / part) for part in ("topomap", *parts))
+            yield Query(files, facts, answers, (*arguments, *more))
 
-    yield query((), truth.final)
-    for part in PARTS:
-        yield query((part,), truth.having(part))
-    yield query(("bound",), truth.having(bound=3), "-c", "places=3")
-    yield query(
-        ("genus",),
-        truth.final,
-        "--opt-mode=ignore",
-        added="#show euler/1. #show genus/1.",
-        atoms=lambda h: {f"euler({h.euler()})", f"genus({h.genus()})"},
+    def least(parts, cost, found):
+        return query(parts, truth.least(cost, found), "--opt-mode=optN", cost=cost)
+
+    def genus(h):
+        return (h.genus(),)
+
+    def fewest(h):
+        return h.cost()
+
+    def both(h):
+        return (h.genus(), *h.cost())
+
+    # The plain ones are also to say what euler/1 and genus/1 are.
+    figures = "#show euler/1. #show genus/1."
+    answers = frozenset(
+        ((), atoms(at) | {f"euler({h.euler()})", f"genus({h.genus()})"})
+        for at, h in truth.final.items()
     )
-    yield least(("minimal",), lambda h: h.cost(), truth.final)
-    yield least(("boundary", "minimal"), lambda h: h.cost(), truth.having("boundary"))
-    yield least(("genus",), lambda h: (h.genus(),), truth.final)
-    yield least(("genus", "minimal"), lambda h: (h.genus(), *h.cost()), truth.final)
+    ignore = (*arguments, "--opt-mode=ignore")
+    yield Query(("topomap", "genus"), facts + figures, answers, ignore)
+
+    yield from query((), truth.final)
+    for part in PARTS:
+        yield from query((part,), truth.having(part))
+    yield from query(("bound",), truth.having(bound=3), "-c", "places=3")
+    yield from query(("genus", "minimal"), truth.final, "--opt-mode=enum,99", cost=both)
+    yield from least(("minimal",), fewest, truth.final)
+    yield from least(("boundary", "minimal"), fewest, truth.having("boundary"))
+    yield from least(("genus",), genus, truth.final)
+    yield from least(("genus", "minimal"), both, truth.final)
+
+
+def sizes() -> list[Query]:
+    """What the size of the fast encodings is taken by: each experience with all the parts."""
+    files = tuple(f"fast/{part}" for part in ("topomap", "bound", *PARTS, "genus", "minimal"))
+    return [Query(files, seen.facts(), frozenset()) for seen in (EXPERIENCES | WORLDS).values()]
 
 
 def check() -> Iterator[Query]:
@@ -160,25 +202,23 @@ def check() -> Iterator[Query]:
                 continue
             facts = [f"at({step},{place},{slot})." for step, place, slot in at]
             facts += [f"demand({demand})." for demand in demands]
-            shown = frozenset(f"violation({rule},{step})" for rule, step in violations)
-            yield Query(("check",), experience.facts() + "".join(facts), frozenset({shown}))
+            found = shown(*(f"violation({rule},{step})" for rule, step in violations))
+            yield Query(("check",), experience.facts() + "".join(facts), found)
 
 
 def demands() -> Iterator[Query]:
     """Demands that are known, and others."""
     facts = "slots(4). view(0,0). view(1,0). turn(1,0). at(0,0,0). at(1,1,0). "
     for demand in ("planar", "closed", "travelled", "boundary", "perpendicular", "bound(2)"):
-        yield Query(("check",), f"{facts} demand({demand}).", frozenset({frozenset()}))
+        yield Query(("check",), f"{facts} demand({demand}).", shown())
     for demand in ("plannar", "bound", "bound(a)", "bound(#inf)", '"closed"', "2"):
-        shown = frozenset({f"violation({demand},1)"})
-        yield Query(("check",), f"{facts} demand({demand}).", frozenset({shown}))
+        yield Query(("check",), f"{facts} demand({demand}).", shown(f"violation({demand},1)"))
 
 
 def faults() -> Iterator[Query]:
     """Instances with faults."""
     for facts, errors in INSTANCES.items():
-        shown = frozenset(f"error({error})" for error in errors.split())
-        yield Query(("input",), facts, frozenset({shown}))
+        yield Query(("input",), facts, shown(*(f"error({error})" for error in errors.split())))
 
 
 SUITES = (theory, check, demands, faults)

@@ -10,6 +10,7 @@ import argparse
 import os
 import platform
 import random
+import re
 import resource
 import signal
 import sys
@@ -23,7 +24,7 @@ from pathlib import Path
 import clingo
 from clingo import ast
 from conftest import ENCODINGS, ROOT
-from corpus import Query, queries
+from corpus import Query, queries, sizes
 from topomap.errors import InputError
 from topomap.experience import LARGEST
 from topomap.files import output
@@ -32,7 +33,7 @@ from tqdm import tqdm
 LISTED = ROOT / "tests/equivalent.toml"
 REPORT = ROOT / "docs/mutation.md"
 KINDS = ("remove", "drop", "negate", "shift")
-FATES = ("survived", "killed", "refused", "endless")
+FATES = ("survived", "killed", "refused", "endless", "larger")
 SECONDS = 5  # of the processor, for one query: the encodings take milliseconds
 BYTES = 2 << 30
 HEAD = """# Rule mutation
@@ -42,12 +43,14 @@ Written by `make mutate`, with clingo {clingo} and Python {python}.
 A mutant is an encoding changed in one place: a statement removed; a literal of a body or of a
 condition dropped; one negated, or a comparison turned into its complement; a number made one
 greater or one less. Mutants that read the same are one. Each is asked the queries of
-`tests/corpus.py` that load it, whose answers are known without the encodings. It is *killed*
+`tests/corpus.py` that load it, whose answers are known without the encodings: those in
+`fast/` the ones that load `fast/topomap.lp`, the others those that do not. It is *killed*
 when one gives other answers (other models, shown atoms or costs, or a model twice), *refused*
 when clingo has an error or a message for it, *endless* when a query takes more than {seconds}
-seconds of the processor or {memory} MiB of memory. When all answers are right, it is
-*equivalent* if `tests/equivalent.toml` says why, and has *survived* if not. Comments and
-`#include` are not mutated.
+seconds of the processor or {memory} MiB of memory. When all answers are right, a mutant of
+`fast/`, whose worth is in its size, is *larger* if it grounds to more rules, over all named
+experiences with all the parts. Another one is *equivalent* if `tests/equivalent.toml` says
+why, and has *survived* if not. Comments and `#include` are not mutated.
 """
 COMPLEMENT = {
     ast.ComparisonOperator.Equal: ast.ComparisonOperator.NotEqual,
@@ -56,6 +59,9 @@ COMPLEMENT = {
 }
 COMPLEMENT |= {other: one for one, other in COMPLEMENT.items()}
 
+
+INCLUDE = re.compile(r'^#include "(.+)\.lp"\.', re.MULTILINE)
+FAST = "fast/"
 
 Key = tuple[str, str, str]  # the file, the rule and the change of a mutant
 
@@ -79,6 +85,12 @@ class Mutant:
         return " | ".join(self.key)
 
 
+def named_files(folder: Path) -> list[str]:
+    """The encodings under a folder, the fast ones last."""
+    names = (str(path.relative_to(folder))[:-3] for path in folder.rglob("*.lp"))
+    return sorted(names, key=lambda file: (file.startswith(FAST), file))
+
+
 def statements(folder: Path, file: str) -> list[ast.AST]:
     """The statements of an encoding, without its includes and comments."""
     lines = (folder / f"{file}.lp").read_text(encoding="utf-8").splitlines()
@@ -87,6 +99,30 @@ def statements(folder: Path, file: str) -> list[ast.AST]:
     ast.parse_string(text, found.append)
     left_out = (ast.ASTType.Comment, ast.ASTType.Program)
     return [statement for statement in found if statement.ast_type not in left_out]
+
+
+def closure(folder: Path, files: tuple[str, ...]) -> tuple[str, ...]:
+    """These encodings and all that they include."""
+    found: list[str] = []
+    waiting = [*files]
+    while waiting:
+        if (file := waiting.pop()) not in found:
+            found.append(file)
+            text = (folder / f"{file}.lp").read_text(encoding="utf-8")
+            names = (Path(file).parent / name for name in INCLUDE.findall(text))
+            waiting += [os.path.normpath(name) for name in names]
+    return tuple(found)
+
+
+def sets(folder: Path, asked: list[Query]) -> dict[tuple[str, ...], tuple[str, ...]]:
+    """What is loaded by each set of files that a query names."""
+    return {files: closure(folder, files) for files in {query.files for query in asked}}
+
+
+def tries(files: tuple[str, ...], loaded: tuple[str, ...], file: str) -> bool:
+    """Whether queries of these files are for trying this one: they load it, and are of its
+    form."""
+    return file in loaded and file.startswith(FAST) == files[0].startswith(FAST)
 
 
 def mutants(folder: Path, file: str) -> list[Mutant]:
@@ -150,41 +186,53 @@ def negated(literal: ast.AST) -> ast.AST:
     return literal.update(sign=sign)
 
 
-def tried(program: dict[str, str], query: Query) -> str:
+def tried(program: str, query: Query) -> str:
     """The fate of a program at a query: refused if clingo has a message or an error."""
     messages: list[str] = []
     arguments = ["0", *query.arguments]
     control = clingo.Control(arguments, logger=lambda _, text: messages.append(text))
     try:
-        control.add("base", [], "\n".join(program[file] for file in query.files))
+        control.add("base", [], program)
         control.add("base", [], query.facts)
         control.ground([("base", [])])
     except RuntimeError:
         return "refused"
     if messages:
         return "refused"
-    wanted = {(query.cost, answer) for answer in query.answers}
+    optimal = "--opt-mode=optN" in query.arguments
     found = []
 
     def read(model: clingo.Model) -> bool:
-        if query.cost and not model.optimality_proven:
+        if optimal and not model.optimality_proven:
             return True
         found.append((tuple(model.cost), frozenset(map(str, model.symbols(shown=True)))))
-        return found[-1] in wanted and len(found) <= len(wanted)
+        return found[-1] in query.answers and len(found) <= len(query.answers)
 
     control.solve(on_model=read)
-    right = len(found) == len(wanted) and set(found) == wanted
+    right = len(found) == len(query.answers) and set(found) == query.answers
     return "survived" if right else "killed"
 
 
-def suffer(program: dict[str, str], asked: list[Query]) -> str:
-    """The fate of a program at the first query that it does not survive. A query that
-    takes too long ends the process."""
+def rules(programs: dict[tuple[str, ...], str], measured: list[Query]) -> int:
+    """How many rules these programs ground to."""
+    total = 0
+    for query in measured:
+        control = clingo.Control(["1", "--opt-mode=ignore"])
+        control.add("base", [], programs[query.files] + query.facts)
+        control.ground([("base", [])])
+        control.solve()
+        total += int(control.statistics["problem"]["lp"]["rules"])
+    return total
+
+
+def suffer(programs: dict[tuple[str, ...], str], asked: list[Query]) -> str:
+    """The fate of a mutant, in programs by the files of a query, at the first query that it
+    does not survive. A query that takes too long ends the process."""
     resource.setrlimit(resource.RLIMIT_AS, (BYTES, BYTES))
     for query in asked:
         signal.setitimer(signal.ITIMER_PROF, SECONDS)
         try:
-            fate = tried(program, query)
+            fate = tried(programs[query.files], query)
         except MemoryError:
             return "endless"
         if fate != "survived":
@@ -193,11 +241,22 @@ def suffer(program: dict[str, str], asked: list[Query]) -> str:
 
 
 def fates(
-    folder: Path, chosen: list[Mutant], asked: list[Query], jobs: int
+    folder: Path, chosen: list[Mutant], asked: list[Query], measured: list[Query], jobs: int
 ) -> Iterator[tuple[Mutant, str]]:
     """The fate of each mutant, as they come, each in a process of its own."""
-    names = {mutant.file for mutant in chosen}.union(*(query.files for query in asked))
+    loaded = sets(folder, asked + measured)
+    names = set().union(*loaded.values())
     texts = {file: list(map(str, statements(folder, file))) for file in names}
+
+    def programs(file: str) -> dict[tuple[str, ...], str]:
+        return {
+            files: "\n".join(text for name in every for text in texts[name])
+            for files, every in loaded.items()
+            if tries(files, every, file)
+        }
+
+    fast = any(mutant.file.startswith(FAST) for mutant in chosen)
+    least = rules(programs(f"{FAST}topomap"), measured) if fast else 0
     waiting = list(reversed(chosen))
     running: dict[int, Mutant] = {}
     try:
@@ -210,9 +269,12 @@ def fates(
                 code = len(FATES)
                 try:
                     texts[mutant.file][mutant.number] = mutant.text
-                    program = {file: "\n".join(text) for file, text in texts.items()}
-                    mine = [query for query in asked if mutant.file in query.files]
-                    code = FATES.index(suffer(program, mine))
+                    mutated = programs(mutant.file)
+                    fate = suffer(mutated, [query for query in asked if query.files in mutated])
+                    if fate == "survived" and mutant.file.startswith(FAST):
+                        signal.setitimer(signal.ITIMER_PROF, SECONDS * len(measured))
+                        fate = "larger" if rules(mutated, measured) > least else fate
+                    code = FATES.index(fate)
                 finally:
                     os._exit(code)
             child, status = os.wait()
@@ -250,6 +312,8 @@ def report(fate: dict[Mutant, str], reasons: dict[Key, str]) -> str:
         return f"| {name} | {' | '.join(map(str, [*numbers, proved]))} |"
 
     rows = [row(f"`{file}.lp`", list(group)) for file, group in groupby(fate, lambda m: m.file)]
+    for name, fast in ("all but `fast/`", False), ("all of `fast/`", True):
+        rows.append(row(name, [mutant for mutant in fate if mutant.file.startswith(FAST) == fast]))
     lines = [
         HEAD.format(
             clingo=clingo.__version__,
@@ -295,6 +359,7 @@ def main(
     argv: list[str] | None = None,
     folder: Path = ENCODINGS,
     asked: Callable[[], list[Query]] = queries,
+    measured: Callable[[], list[Query]] = sizes,
 ) -> int:
     parser = argparse.ArgumentParser(description="Try the mutants of the encodings.")
     parser.add_argument("-j", "--jobs", type=count, default=1, help="processes")
@@ -304,19 +369,21 @@ def main(
     parser.add_argument("--report", type=Path, default=REPORT, help="the file to write")
     parser.add_argument("files", nargs="*", help="try only these, as theory/links; no report")
     options = parser.parse_args(argv)
-    names = sorted(str(path.relative_to(folder))[:-3] for path in folder.rglob("*.lp"))
+    names = named_files(folder)
     try:
         if unknown := set(options.files) - set(names):
             raise InputError(f"{', '.join(sorted(unknown))}: no such encoding")
-        if untried := set(names).difference(*(query.files for query in asked())):
-            raise InputError(f"{', '.join(sorted(untried))}: no query in tests/corpus.py loads it")
         reasons = listed(options.listed)
         everyone = [mutant for file in names for mutant in mutants(folder, file)]
+        loaded = sets(folder, asked()).items()
+        for file in dict.fromkeys(mutant.file for mutant in everyone):
+            if not any(tries(files, every, file) for files, every in loaded):
+                raise InputError(f"{file}: no query in tests/corpus.py loads it")
         chosen = [mutant for mutant in everyone if mutant.file in (options.files or names)]
         if options.sample:
             chosen = [mutant for mutant in chosen if mutant.key not in reasons]
             chosen = random.Random(options.seed).sample(chosen, min(options.sample, len(chosen)))
-        trials = fates(folder, chosen, asked(), options.jobs)
+        trials = fates(folder, chosen, asked(), measured(), options.jobs)
         ends = dict(tqdm(trials, "mutants", len(chosen), disable=None))
         fate = {mutant: ends[mutant] for mutant in chosen}
         if not (options.files or options.sample):

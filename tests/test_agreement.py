@@ -1,5 +1,6 @@
-"""Ways to the same answer, on random experiences: stock clingo on the encodings, the search
-of the package, a slow independent search (oracle.py), and two checkers of maps."""
+"""Ways to the same answer, on named and on random experiences: stock clingo on the plain and
+on the fast encodings, the search of the package, a slow independent search (oracle.py), and
+two checkers of maps."""
 
 import random
 import subprocess
@@ -9,33 +10,38 @@ from dataclasses import replace
 from itertools import combinations
 
 import pytest
-from conftest import BIN, ENCODINGS, PARTS, TRIED, Truth, answers
+from conftest import BIN, ENCODINGS, PARTS, TRIED, Truth, answers, costs
+from corpus import EXPERIENCES
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from topomap import search, solver
 from topomap.check import by_definition, by_rules
-from topomap.solver import Query, Watch
+from topomap.solver import FORMS, Query, Watch
 from topomap.statistics import Tally
-from worlds import random_experience
+from worlds import WORLDS, random_experience
 
 QUICK = settings(
-    max_examples=60,
+    max_examples=30,
     derandomize=True,
     deadline=None,
     suppress_health_check=list(HealthCheck),
 )
-EVERY = [parts for number in (0, 1, 2, len(PARTS)) for parts in combinations(PARTS, number)]
+NUMBERS = range(len(PARTS) + 1)
+EVERY = [parts for number in NUMBERS for parts in combinations(PARTS, number)]
+FEW = [parts for parts in EVERY if len(parts) in (0, 1, len(PARTS))]
+SOME = [*FEW, *(parts for parts in EVERY if len(parts) == 2), ("planar", "closed", "perpendicular")]
 DEMANDS = {"planar": "planar", "euler": "planar"}  # of check.lp; other parts by their names
 
 
 @contextmanager
-def case(experience, parts=(), *arguments):
+def case(experience, parts=(), *arguments, form="plain"):
     """Print a case that fails as an instance file, and the commands that give its answers."""
     TRIED["queries on which ways to an answer were compared"] += 1
     try:
         yield
     except AssertionError as error:
-        files = " ".join(f"encodings/{part}.lp" for part in ("topomap", *parts))
+        folder = FORMS[form].relative_to(ENCODINGS.parent)
+        files = " ".join(f"{folder}/{part}.lp" for part in ("topomap", *parts))
         switches = " ".join(f"--{part}" for part in parts)
         error.add_note(f"save as case.lp:\n{experience.facts()}")
         error.add_note(f"clingo {files} case.lp {' '.join(arguments)} 0")
@@ -51,10 +57,25 @@ def searched(experience, *parts, places=None, horizon=None, way=search.hypothese
     return set(found)
 
 
-def best(experience, way):
-    """The optimal maps, or the best so far, and which of these they are."""
-    found = [f for f in solver.best(experience, Query(), Watch(quiet=True), way) if f.proved]
-    return {f.at for f in found}, {f.kind for f in found}
+def all_give(expected, experience, parts=(), *arguments, facts=None):
+    """Demand this answer of clingo on each form of the encodings."""
+    for form in FORMS:
+        with case(experience, parts, *arguments, form=form):
+            given = facts or experience.facts()
+            assert answers(parts, given, *arguments, encoding=form) == expected
+
+
+def driven(experience, form, *parts):
+    """The hypotheses that the driver finds with a form of the encodings."""
+    query = Query(frozenset(parts), encoding=form)
+    return {f.at for f in solver.hypotheses(experience, query, Watch(quiet=True))}
+
+
+def best(experience, way, form="fast"):
+    """The optimal maps, or the best so far, with what they cost and which of these they are."""
+    query = Query(encoding=form)
+    found = [f for f in solver.best(experience, query, Watch(quiet=True), way) if f.proved]
+    return {(f.at, f.cost, f.kind) for f in found}
 
 
 def listed(experience, most=150):
@@ -74,40 +95,49 @@ def experiences(draw):
     return listed(random_experience(draw(st.randoms(use_true_random=False)), 10))
 
 
-def agree_on_parts(experience, truth):
-    for parts in EVERY:
+def agree_on_parts(experience, truth, every=SOME):
+    for parts in every:
+        expected = truth.having(*parts)
+        all_give(expected, experience, parts)
         with case(experience, parts):
-            expected = truth.having(*parts)
-            assert answers(parts, experience.facts()) == expected
             assert searched(experience, *parts) == expected
+    for parts in ("planar", "closed", "perpendicular"), ("closed", "perpendicular"), PARTS:
+        for form in FORMS:
+            with case(experience, parts, form=form):
+                assert driven(experience, form, *parts) == truth.having(*parts)
 
 
 def agree_on_bounds(experience, truth, bound):
+    expected = truth.having(bound=bound)
+    all_give(expected, experience, ("bound",), "-c", f"places={bound}")
     with case(experience, ("bound",), "-c", f"places={bound}"):
-        expected = truth.having(bound=bound)
-        assert answers(("bound",), experience.facts(), "-c", f"places={bound}") == expected
         assert searched(experience, places=bound) == expected
 
 
 def agree_on_preferences(experience, truth):
     facts, final = experience.facts(), truth.final
+    bounds = "--opt-mode=enum,999"
     orders = {
         ("minimal",): lambda h: h.cost(),
-        ("genus",): lambda h: h.genus(),
+        ("genus",): lambda h: (h.genus(),),
         ("genus", "minimal"): lambda h: (h.genus(), *h.cost()),
     }
     for parts, order in orders.items():
+        all_give(truth.least(order, final), experience, parts)
         with case(experience, parts, "--opt-mode=optN"):
-            assert answers(parts, facts) == truth.least(order, final)
             assert searched(experience, *parts) == truth.least(order, final)
+        figures = {at: order(h) for at, h in final.items()}
+        for form in FORMS:
+            with case(experience, parts, bounds, form=form):
+                assert costs(parts, facts, bounds, encoding=form) == figures
     for closed in (("closed",), ()):
-        parts = (*closed, "boundary", "minimal")
-        with case(experience, parts, "--opt-mode=optN"):
-            assert answers(parts, facts) == truth.best(closed=bool(closed))
-    with case(experience, ("closed", "boundary", "minimal"), "--opt-mode=optN"):
-        assert best(experience, search.hypotheses) == best(experience, solver.hypotheses)
-        expected = truth.best(closed=True) or truth.best(closed=False)
-        assert best(experience, search.hypotheses)[0] == expected
+        all_give(truth.best(closed=bool(closed)), experience, (*closed, "boundary", "minimal"))
+    for form in FORMS:
+        with case(experience, ("closed", "boundary", "minimal"), "--opt-mode=optN", form=form):
+            found = best(experience, solver.hypotheses, form)
+            assert found == best(experience, search.hypotheses)
+            expected = truth.best(closed=True) or truth.best(closed=False)
+            assert {at for at, *_ in found} == expected
 
 
 def agree_on_the_tree(experience, truth):
@@ -130,22 +160,26 @@ def agree_on_the_tree(experience, truth):
             key: len(found) for key, found in figures.items()
         }
         assert planar or tally.optimal == len(truth.best(closed=True))
-        assert tally.maps == 1 + sum(
-            len(at) > 1 and len(set(links(experience, at))) > len(set(links(experience, at[:-1])))
-            for level in levels
-            for at in level
-        )
+        maps = [sum(adds_a_link(experience, at) for at in level) for level in levels]
+        assert tally.maps == sum(maps)
+        facts = experience.facts()
         for step, level in enumerate(levels):
-            with case(experience.cut(step), planar):
-                facts = experience.facts()
-                assert answers(planar, facts, "-c", f"horizon={step}") == set(level)
+            cut = experience.cut(step)
+            all_give(set(level), cut, planar, "-c", f"horizon={step}", facts=facts)
+            with case(cut, planar):
                 assert searched(experience, *planar, horizon=step) == set(level)
                 assert {at[:step] for at in level} <= set(levels[step - 1]) or not step
+        for form in FORMS:
+            query = Query(frozenset(planar), encoding=form)
+            with case(experience, planar, form=form):
+                (counted,) = solver.count(experience, query, Watch(quiet=True))
+                assert counted == (len(levels[-1]), maps[-1])
 
 
-def links(experience, at):
-    """The ends of the links of a hypothesis."""
-    return [(step, end) for step, end in experience.map_of(at).links.items()]
+def adds_a_link(experience, at):
+    """Whether the last step of a hypothesis does, or there is none."""
+    grown, before = experience.map_of(at), experience.map_of(at[:-1])
+    return len(at) == 1 or len(grown.links) > len(before.links)
 
 
 def agree_with_the_checkers(experience, truth, most=20):
@@ -203,13 +237,17 @@ def mirrored(experience):
 
 def are_as_many_in_the_mirror(experience, truth):
     image = mirrored(experience)
-    for parts in [(), *((part,) for part in PARTS), PARTS]:
-        with case(image, parts):
-            assert len(answers(parts, image.facts())) == len(truth.having(*parts))
-    for parts in ("minimal",), ("genus",), ("closed", "boundary", "minimal"):
-        with case(image, parts, "--opt-mode=optN"):
-            facts = image.facts(), experience.facts()
-            assert len(answers(parts, facts[0])) == len(answers(parts, facts[1]))
+    for form in FORMS:
+        for parts in FEW:
+            with case(image, parts, form=form):
+                found = answers(parts, image.facts(), encoding=form)
+                assert len(found) == len(truth.having(*parts))
+        for parts in ("minimal",), ("genus",), ("closed", "boundary", "minimal"):
+            with case(image, parts, "--opt-mode=optN", form=form):
+                here, there = (
+                    answers(parts, seen.facts(), encoding=form) for seen in (experience, image)
+                )
+                assert len(here) == len(there)
 
 
 PROPERTIES = [
@@ -236,6 +274,30 @@ def test_quick(holds):
 @given(experiences(), st.data())
 def test_bounds(case, data):
     agree_on_bounds(*case, bound=data.draw(st.integers(1, case[0].steps + 1)))
+
+
+NAMED = EXPERIENCES | WORLDS
+
+
+@pytest.mark.parametrize("name", NAMED)
+def test_named(name):
+    experience, truth = NAMED[name], Truth(NAMED[name])
+    most = max((len(h.stars) for h in truth.final.values()), default=1)
+    agree_on_bounds(experience, truth, max(1, most - 1))
+    agree_on_parts(experience, truth, FEW)
+    agree_on_preferences(experience, truth)
+    agree_with_the_checkers(experience, truth, 5)
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("name", NAMED)
+def test_named_in_every_way(name):
+    experience, truth = NAMED[name], Truth(NAMED[name])
+    for bound in range(1, experience.steps + 2):
+        agree_on_bounds(experience, truth, bound)
+    for holds in PROPERTIES:
+        holds(experience, truth)
+    agree_on_parts(experience, truth, EVERY)
 
 
 @pytest.mark.long

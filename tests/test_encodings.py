@@ -7,26 +7,33 @@ from itertools import combinations
 import pytest
 from clingo import ast
 from conftest import ENCODINGS, PARTS, ROOT, answers, run
+from mutate import named_files, statements
 from topomap.experience import read
+from topomap.solver import FORMS
 from topomap.solver import PARTS as DRIVER_PARTS
 
 FACTS = read(ROOT / "instances/grid-3x3-snake.lp").facts()
 ALL = (*PARTS, "bound", "minimal", "genus")
-FILES = sorted(ENCODINGS.rglob("*.lp"))
+STATED = [file for file in named_files(ENCODINGS) if statements(ENCODINGS, file)]
+in_every_form = pytest.mark.parametrize("form", FORMS)
 
 
 def test_these_are_all_the_parts():
-    assert {path.stem for path in ENCODINGS.glob("*.lp")} == {"topomap", "input", "check", *ALL}
+    names = {form: {path.stem for path in folder.glob("*.lp")} for form, folder in FORMS.items()}
+    assert names["plain"] == {"topomap", "input", "check", *ALL}
+    assert names["fast"] == {"topomap", *ALL}
     assert {*DRIVER_PARTS, "bound"} == set(ALL)
 
 
+@in_every_form
 @pytest.mark.parametrize("parts", [(), *combinations(ALL, 1), *combinations(ALL, 2), ALL])
-def test_parts_load_alone_and_together_without_messages(parts):
-    assert answers(parts, FACTS)
+def test_parts_load_alone_and_together_without_messages(parts, form):
+    assert answers(parts, FACTS, encoding=form)
 
 
-def test_files_load_in_any_order_from_anywhere(tmp_path):
-    files = [ENCODINGS / f"{name}.lp" for name in ("planar", "closed", "topomap")]
+@in_every_form
+def test_files_load_in_any_order_from_anywhere(form):
+    files = [FORMS[form] / f"{name}.lp" for name in ("planar", "closed", "topomap")]
     instance = ROOT / "instances/grid-3x3-snake.lp"
     for order in ([instance, *files], [*reversed(files), instance]):
         done = run("clingo", *order, "0", "-q")
@@ -47,22 +54,30 @@ def test_clingo_is_the_real_one(tmp_path, program, arguments, status):
     assert json.loads(run("clingo", "--outf=2", "--stats", file).stdout or "{}")["Solver"]
 
 
-def test_a_start_without_steps_has_one_map():
-    assert answers(ALL[:2], "slots(4). view(0,0).") == {((0, 0),)}
+@in_every_form
+def test_a_start_without_steps_has_one_map(form):
+    assert answers(ALL[:2], "slots(4). view(0,0).", encoding=form) == {((0, 0),)}
 
 
-@pytest.mark.parametrize("path", FILES, ids=lambda path: path.stem)
-def test_each_file_says_what_it_is(path):
+@pytest.mark.parametrize("file", STATED)
+def test_each_file_says_what_it_is(file):
+    """Each that does not only include others."""
+    path = ENCODINGS / f"{file}.lp"
     head = re.match(r"(%.*\n)+", path.read_text()).group()
     assert head.startswith(f"% {path.name} -- ")
     assert re.search(r"^% Input", head, re.MULTILINE)
     assert "ource:" in head
 
 
-@pytest.mark.parametrize(
-    "path", [path for path in FILES if path.stem != "check"], ids=lambda path: path.stem
-)
-def test_no_body_weighs_or_counts_derived_atoms(path):
+AGGREGATES = {
+    "bound": ["places < #count { P: new(P) }"],
+    "input": ["M = #max { T: turned(T) }"],
+    "theory/places": ["1 = { at(T,P,S): fits(T,P,S) }"],
+}
+
+
+@pytest.mark.parametrize("file", [file for file in STATED if file != "check"])
+def test_no_body_weighs_or_counts_derived_atoms(file):
     """clasp miscounts on such bodies (docs/clasp.md): bound.lp counts new/1 alone, each
     atom of which is one chosen atom; input.lp takes the largest of facts; the choice in
     places.lp is of distinct atoms. Of check.lp nothing reaches clasp (test_check.py)."""
@@ -73,15 +88,11 @@ def test_no_body_weighs_or_counts_derived_atoms(path):
             aggregates.append(str(node))
             return node
 
-        visit_Aggregate = visit_BodyAggregate
+        visit_Aggregate = visit_HeadAggregate = visit_BodyAggregate
 
         def visit_Script(self, node):
             raise AssertionError("a script")
 
-    ast.parse_files([str(path)], Finder())
-    allowed = {
-        "bound": ["places < #count { P: new(P) }"],
-        "input": ["M = #max { T: turned(T) }"],
-    }
-    choice = ["1 = { at(T,P,S): fits(T,P,S) }"] if path.stem in ("topomap", "places") else []
-    assert aggregates == allowed.get(path.stem, choice)
+    for statement in statements(ENCODINGS, file):
+        Finder().visit(statement)
+    assert aggregates == AGGREGATES.get(file, [])

@@ -3,7 +3,7 @@
 import mutate
 import pytest
 from conftest import ENCODINGS
-from corpus import Query, queries
+from corpus import Query, queries, shown, sizes
 
 RULES = """
 p(X) :- q(X,1), not r(X).
@@ -55,7 +55,7 @@ MUTANTS = {
 # A program with mutants that are killed, refused and endless, and an equivalent one.
 COUNTER = "% Count.\nn(0).\nn(X+1) :- n(X), X < limit.\n#show n/1.\n"
 ASKED = [
-    Query(("counter",), "", frozenset({frozenset({"n(0)", "n(1)"})}), ("-c", "limit=1")),
+    Query(("counter",), "", shown("n(0)", "n(1)"), ("-c", "limit=1")),
 ]
 EQUIVALENT = ("counter", "#show n/1.", "remove")
 KILLED = ("counter", "n(0).", "n(0) -> n(1)")
@@ -81,7 +81,7 @@ def mutated(tmp_path, monkeypatch, capsys):
     def run(text, *arguments):
         listed.write_text(text)
         files = ["--listed", str(listed), "--report", str(report)]
-        status = mutate.main([*files, *arguments], folder, lambda: ASKED)
+        status = mutate.main([*files, *arguments], folder, lambda: ASKED, list)
         written = report.read_text() if report.exists() else None
         return status, *capsys.readouterr(), written
 
@@ -99,8 +99,8 @@ def test_these_mutants_are_made(tmp_path):
 def test_all_is_well_if_only_listed_mutants_survive(mutated):
     status, out, _, report = mutated(listing(EQUIVALENT))
     assert status == 0
-    assert out == "11 mutants: 1 survived, 7 killed, 2 refused, 1 endless\n"
-    assert "| `counter.lp` | 3 | 2 | 2 | 4 | 11 | 0 | 7 | 2 | 1 | 1 |" in report.splitlines()
+    assert out == "11 mutants: 1 survived, 7 killed, 2 refused, 1 endless, 0 larger\n"
+    assert "| `counter.lp` | 3 | 2 | 2 | 4 | 11 | 0 | 7 | 2 | 1 | 0 | 1 |" in report.splitlines()
     assert "- `remove`: R." in report.splitlines()
     assert mutated(listing(EQUIVALENT), "-j", "3")[3] == report
 
@@ -119,6 +119,26 @@ def test_a_listed_mutant_that_is_killed_or_is_none_is_a_fault(mutated):
         "listed, but killed: counter | n(0). | n(0) -> n(1)",
         "listed, but no mutant: counter | n(7). | remove",
     ]
+
+
+def test_a_fast_mutant_that_only_grounds_to_more_is_larger(tmp_path):
+    """And queries of the one form are not asked of the other."""
+    (tmp_path / "fast").mkdir()
+    (tmp_path / "some.lp").write_text("few(X) :- n(X), X < 1.\n")
+    (tmp_path / "fast/topomap.lp").write_text('#include "../some.lp".\n#show n/1.\nm :- n(7).\n')
+    (tmp_path / "fast/some.lp").write_text("few(X) :- n(X), X < 1.\n")
+    asked = [
+        Query(("some",), "n(0).", shown("few(0)", "n(0)")),
+        Query(("fast/topomap", "fast/some"), "n(0). n(1).", shown("n(0)", "n(1)")),
+    ]
+    report, listed = tmp_path / "report.md", tmp_path / "listed.toml"
+    listed.write_text("equivalent = []")
+    files = ["--listed", str(listed), "--report", str(report)]
+    assert mutate.main(files, tmp_path, lambda: asked, lambda: asked[1:]) == 1
+    rows = report.read_text().splitlines()
+    assert "| `some.lp` | 1 | 2 | 2 | 2 | 7 | 2 | 3 | 2 | 0 | 0 | 0 |" in rows
+    assert "| `fast/some.lp` | 1 | 2 | 2 | 2 | 7 | 2 | 0 | 2 | 0 | 3 | 0 |" in rows
+    assert "| all of `fast/` | 3 | 3 | 3 | 4 | 13 | 5 | 1 | 2 | 0 | 5 | 0 |" in rows
 
 
 def test_a_sample_is_of_mutants_that_are_not_listed_and_writes_nothing(mutated):
@@ -160,8 +180,8 @@ def test_no_statement_can_be_removed():
         if mutant.kind == "remove" and mutant.key not in reasons
     ]
     assert len(chosen) > 60
-    for mutant, fate in mutate.fates(ENCODINGS, chosen, queries(), 1):
-        assert fate in ("killed", "refused"), mutant
+    for mutant, fate in mutate.fates(ENCODINGS, chosen, queries(), sizes(), 1):
+        assert fate in ("killed", "refused", "larger"), mutant
 
 
 @pytest.mark.parametrize("number", [40, pytest.param(300, marks=pytest.mark.long)])

@@ -7,7 +7,9 @@ import pytest
 from conftest import COLUMNS, ROOT, Truth, answers, run
 from topomap import figure4
 from topomap.experience import read
-from topomap.solver import Watch
+from topomap.journal import Journal
+from topomap.solver import FORMS, Query, Watch
+from topomap.statistics import tree
 
 IDS = [f"{c['environment']}{'-planar' * c['planarity']}" for c in COLUMNS]
 
@@ -16,6 +18,7 @@ def grid(name):
     return read(ROOT / "instances" / f"{name}.lp")
 
 
+@pytest.mark.parametrize("form", FORMS)
 @pytest.mark.parametrize(
     ("parts", "instance", "options", "line"),
     [
@@ -35,20 +38,27 @@ def grid(name):
         ),
     ],
 )
-def test_clingo_alone_prints_the_count(parts, instance, options, line):
-    files = [f"encodings/{part}.lp" for part in parts.split()]
+def test_clingo_alone_prints_the_count(parts, instance, options, line, form):
+    files = [FORMS[form] / f"{part}.lp" for part in parts.split()]
     done = run("clingo", *files, f"instances/{instance}.lp", *options.split())
     assert line in done.stdout.splitlines()
     assert done.returncode == 30
     assert not done.stderr
 
 
-@pytest.mark.parametrize("column", COLUMNS[:4], ids=IDS[:4])
-def test_a_column_of_the_table(column):
-    row = figure4.row(column, Watch(quiet=True))
-    assert not figure4.differences(row)
-    assert row["per_step"] == column["expected"]["per_step"]
-    assert sum(row["per_step"]) == row["nodes"]
+@pytest.mark.parametrize("form", FORMS)
+@pytest.mark.parametrize(
+    "column",
+    [*COLUMNS[:4], *(pytest.param(column, marks=pytest.mark.long) for column in COLUMNS[4:])],
+    ids=IDS,
+)
+def test_a_column_of_the_table(column, form):
+    parts = frozenset(["planar"] if column["planarity"] else [])
+    query, figures = Query(parts, column["places"], encoding=form), {}
+    tree(grid(column["instance"]), query, Watch(quiet=True), Journal(), figures)
+    assert not figure4.differences({**column, **figures})
+    assert figures["per_step"] == column["expected"]["per_step"]
+    assert sum(figures["per_step"]) == figures["nodes"]
 
 
 @pytest.mark.parametrize("column", [c for c in COLUMNS if c["environment"] == "3x3"])
@@ -58,23 +68,23 @@ def test_the_search_has_the_same_tree(column):
     assert [len(level) for level in tree] == column["expected"]["per_step"]
 
 
-def test_the_two_best_maps_of_the_3x3_grid_are_one_graph():
+@pytest.mark.parametrize("form", FORMS)
+def test_the_two_best_maps_of_the_3x3_grid_are_one_graph(form):
     """Figure 1 b and c: the grid, and the same graph on a torus."""
     experience = grid("grid-3x3-snake")
-    maps = [
-        experience.map_of(at)
-        for at in answers(("closed", "boundary", "minimal"), experience.facts())
-    ]
+    best = answers(("closed", "boundary", "minimal"), experience.facts(), encoding=form)
+    maps = [experience.map_of(at) for at in best]
     assert sorted(world.genus() for world in maps) == [0, 1]
     assert len({len(world.edges()) for world in maps}) == 1
 
 
-def test_the_4x4_grid_has_over_minimal_maps():
+@pytest.mark.parametrize("form", FORMS)
+def test_the_4x4_grid_has_over_minimal_maps(form):
     """Figure 5 c and d: planar, 12 places, 6 paths, 18 links, with and without planarity."""
     experience = grid("grid-4x4-snake")
     best = ("closed", "boundary", "minimal")
-    found = answers(best, experience.facts())
-    assert found == answers(("planar", *best), experience.facts())
+    found = answers(best, experience.facts(), encoding=form)
+    assert found == answers(("planar", *best), experience.facts(), encoding=form)
     sizes = {
         (len(world.stars), len(world.paths()), len(world.edges()), world.genus())
         for world in map(experience.map_of, found)
@@ -83,12 +93,13 @@ def test_the_4x4_grid_has_over_minimal_maps():
     assert sizes == {(12, 6, 18, 0)}
 
 
-def test_the_unique_perpendicular_map_is_the_grid(tmp_path):
+@pytest.mark.parametrize("form", FORMS)
+def test_the_unique_perpendicular_map_is_the_grid(tmp_path, form):
     """Figure 5 a."""
     truth = tmp_path / "truth.json"
     run("topomap", "generate", "grid", "4", "4", "--route", "snake", "--truth", truth)
     solve = ["solve", "instances/grid-4x4-snake.lp", "--closed", "--perpendicular", "--planar"]
-    done = run("topomap", *solve, "--truth", truth, "--json")
+    done = run("topomap", *solve, "--encoding", form, "--truth", truth, "--json")
     (only,) = json.loads(done.stdout)["maps"]
     assert only["real"] is True
 

@@ -7,15 +7,18 @@ from clintest.assertion import SupersetOf
 from clintest.quantifier import Any
 from clintest.solver import Clingo
 from clintest.test import Assert
-from conftest import ENCODINGS, answers
+from conftest import answers
 from corpus import EXPERIENCES, seen
+from topomap.solver import FORMS
+
+in_every_form = pytest.mark.parametrize("form", FORMS)
 
 
-def admits(parts, experience, at, *arguments):
+def admits(form, parts, experience, at, *arguments):
     """Whether the hypothesis ``at``, written "place.gateway ...", is an answer."""
     dstates = [dstate.split(".") for dstate in at.split()]
     wanted = {f"at({step},{place},{slot})" for step, (place, slot) in enumerate(dstates)}
-    files = [str(ENCODINGS / f"{part}.lp") for part in ("topomap", *parts)]
+    files = [str(FORMS[form] / f"{part}.lp") for part in ("topomap", *parts)]
     test = Assert(Any(), SupersetOf(wanted))
     Clingo(["0", *arguments], experience.facts(), files).solve(test)
     return test.outcome().current_value()
@@ -52,14 +55,15 @@ but three may meet at a place    | perpendicular | star: 0.0 1.0 0.0 3.0 0.1 5.0
 """  # noqa: E501
 
 
+@in_every_form
 @pytest.mark.parametrize("case", CASES.strip().splitlines())
-def test_rule_holds_and_bites(case):
+def test_rule_holds_and_bites(case, form):
     _, part, holds, bites = (field.strip() for field in case.split("|"))
     parts, bound = [part] if part else [], ["-c", "places=3"] if part == "bound" else []
 
     def admitted(parts, case, *arguments):
         name, _, at = case.partition(": ")
-        return admits(parts, EXPERIENCES[name], at, *arguments)
+        return admits(form, parts, EXPERIENCES[name], at, *arguments)
 
     assert admitted(parts, holds, *bound)
     assert not admitted(parts, bites, *bound)
@@ -67,23 +71,28 @@ def test_rule_holds_and_bites(case):
         assert admitted([], bites), "another rule bites too"
 
 
-def test_the_fewest_paths_and_places_are_preferred():
+@in_every_form
+def test_the_fewest_paths_and_places_are_preferred(form):
     facts = EXPERIENCES["square"].facts()
-    assert answers(("minimal",), facts) == {((0, 0), (1, 0), (2, 0), (3, 0), (0, 3))}
+    best = {((0, 0), (1, 0), (2, 0), (3, 0), (0, 3))}
+    assert answers(("minimal",), facts, encoding=form) == best
 
 
-def test_the_least_genus_is_preferred_to_the_fewest_paths():
+@in_every_form
+def test_the_least_genus_is_preferred_to_the_fewest_paths(form):
     """Of this experience, the one map with the fewest paths is not planar."""
     across = seen("0 1 3", "0: 0 1 3", "3: 0 1 2 3", "1: 0 1 2 3", "1: 0 2 3", "2: 0 1 2 3")
     across = replace(across, landmarks=tuple(map(frozenset, ["", "b", "a", "", "", "a"])))
-    (fewest,) = answers(("minimal",), across.facts())
-    planar = answers(("planar",), across.facts())
+    facts = across.facts()
+    (fewest,) = answers(("minimal",), facts, encoding=form)
+    planar = answers(("planar",), facts, encoding=form)
     assert fewest not in planar
-    assert answers(("genus", "minimal"), across.facts()) < planar
+    assert answers(("genus", "minimal"), facts, encoding=form) < planar
 
 
-def test_the_horizon_cuts_the_experience():
+@in_every_form
+def test_the_horizon_cuts_the_experience(form):
     square = EXPERIENCES["square"]
     for horizon in range(square.steps + 1):
-        cut = answers((), square.cut(horizon).facts())
-        assert answers((), square.facts(), "-c", f"horizon={horizon}") == cut
+        cut = answers((), square.cut(horizon).facts(), encoding=form)
+        assert answers((), square.facts(), "-c", f"horizon={horizon}", encoding=form) == cut
