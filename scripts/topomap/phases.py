@@ -13,11 +13,15 @@ asked), so the answers stay the same. ``encodings/fast/phases/`` has the program
 
 from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import clingo
 from clingo import Function, Number, Symbol
 
 from topomap.experience import Experience
+
+if TYPE_CHECKING:
+    from topomap.solver import Query
 
 NEEDED = {"closed", "perpendicular"}
 LEAST = 90  # steps: shorter explorations are as soon done in one call
@@ -28,21 +32,24 @@ STRIDE = 8  # steps, at least, from one beginning to the next
 Heed = Callable[[], None]  # called often; raises what ends the work
 
 
-def apply(experience: Experience, parts: Iterable[str]) -> bool:
+def serve(experience: Experience, query: "Query") -> bool:
     """Whether the phases are for such a query."""
-    return experience.slots == 4 and experience.steps >= LEAST and set(parts) >= NEEDED
+    steps = experience.steps if query.horizon is None else query.horizon
+    return experience.slots == 4 and min(steps, experience.steps) >= LEAST and query.parts >= NEEDED
 
 
-def known(experience: Experience, folder: Path, planar: bool, heed: Heed) -> str:
-    """Facts for ``phases/topomap.lp`` that hold in every closed and perpendicular map.
+def found(experience: Experience, query: "Query", folder: Path, heed: Heed) -> str:
+    """Facts for ``phases/topomap.lp`` that hold in every map which the query asks for.
 
-    ``folder`` has the fast encodings. The experience is cut at its horizon.
+    ``folder`` has the fast encodings; ``heed`` is called between two calls of clingo.
     """
+    if query.horizon is not None:
+        experience = experience.cut(query.horizon)
     work = _Phases(experience.facts(), folder, heed)
     work.visits()
     work.runs()
     work.new()
-    if planar:
+    if "planar" in query.parts:
         work.beginnings(experience)
     return work.facts()
 
@@ -76,7 +83,7 @@ class _Phases:
 
     def runs(self) -> None:
         control = self._grounded("phases/runs")
-        control.configuration.solve.solve_limit = str(TRY)
+        _limit(control, TRY)
         atoms = control.symbolic_atoms
         through = sorted(atom.symbol.arguments[0] for atom in atoms.by_signature("through", 1))
         possible: set[Symbol] = set()
@@ -92,7 +99,7 @@ class _Phases:
 
     def new(self) -> None:
         control = self._grounded("phases/topomap", "closed", "perpendicular")
-        control.configuration.solve.solve_limit = str(TRY)
+        _limit(control, TRY)
         for atom in list(control.symbolic_atoms.by_signature("new", 1)):
             (visit,) = atom.symbol.arguments
             if self._refuted(control, atom.symbol, True):
@@ -120,7 +127,7 @@ class _Phases:
             options = ["0", "--enum-mode=brave", "-c", f"horizon={end}"]
             files = ("phases/topomap", "perpendicular", "planar")
             control = self._grounded(*files, arguments=options)
-            control.configuration.solve.solve_limit = str(TRY_HARD)
+            _limit(control, TRY_HARD)
             asked = {atom.symbol for atom in control.symbolic_atoms.by_signature("at", 3)}
             found: set[Symbol] = set()
             with control.solve(yield_=True) as models:
@@ -131,6 +138,10 @@ class _Phases:
                     return  # later ones are larger
             for atom in sorted(asked - found):
                 self._know("out", *atom.arguments)
+
+
+def _limit(control: clingo.Control, conflicts: int) -> None:
+    control.configuration.solve.solve_limit = str(conflicts)  # type: ignore[union-attr]
 
 
 def _ends(experience: Experience, last: int) -> Iterator[int]:

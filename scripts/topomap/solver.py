@@ -20,7 +20,7 @@ from typing import Any, TypeVar
 import clingo
 from tqdm import tqdm
 
-from topomap import __version__
+from topomap import __version__, phases
 from topomap.errors import InputError
 from topomap.experience import DState, Experience
 
@@ -73,12 +73,12 @@ class Query:
         """The query with more parts."""
         return replace(self, parts=self.parts | set(parts))
 
-    def control(self, facts: str) -> clingo.Control:
-        """clingo with the encodings and the facts, not yet grounded."""
+    def control(self, facts: str, entry: str = "topomap") -> clingo.Control:
+        """clingo with the encodings, the entry file first, and the facts, not yet grounded."""
         arguments = ["0"]
         if self.optimizes:
             arguments.append("--opt-mode=optN")
-        files = ["topomap", *sorted(self.parts)]
+        files = [entry, *sorted(self.parts)]
         if self.places is not None:
             files.append("bound")
             arguments += ["-c", f"places={self.places}"]
@@ -149,8 +149,10 @@ class Program:
 
     def __init__(self, experience: Experience, query: Query):
         self.asked = experience, query
-        self.control = query.control(experience.facts())
-        self._grounded = False
+        self._phased = query.encoding == "fast" and phases.serve(experience, query)
+        entry = "phases/topomap" if self._phased else "topomap"
+        self.control = query.control(experience.facts(), entry)
+        self._grounded = self._interrupted = False
 
     def solve(
         self,
@@ -160,9 +162,20 @@ class Program:
     ) -> None:
         """Solve it, with the hypotheses that begin with a cube as the only ones."""
         if not self._grounded:
+            if self._phased:
+                self.control.add("base", [], phases.found(*self.asked, FORMS["fast"], self._heed))
             self.control.ground()
             self._grounded = True
         self.control.solve([*_assumed(cube), *more], on_model=on_model)
+
+    def _heed(self) -> None:
+        if self._interrupted:
+            raise Stopped(INTERRUPT)
+
+    def interrupt(self) -> None:
+        """End the call of another thread, as soon as it has grounded."""
+        self._interrupted = True
+        self.control.interrupt()
 
     def keep(self) -> None:
         """Have it at hand, with what it has learnt, if this thread asks for it again."""
@@ -249,7 +262,7 @@ def _in_thread(
         if ended:
             program.keep()
         else:
-            program.control.interrupt()  # clingo heeds it as soon as it has grounded
+            program.interrupt()
         thread.join(timeout=0.5)
 
 
