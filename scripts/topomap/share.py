@@ -158,6 +158,8 @@ class Cluster:
     """A running Dask cluster. It does the units of lost workers again."""
 
     def __init__(self, address: str):
+        if not address.strip():  # of which Dask would make a cluster of its own
+            raise InputError("--dask: an empty address")
         try:
             import distributed
         except ImportError:
