@@ -26,8 +26,8 @@ if TYPE_CHECKING:
 NEEDED = {"closed", "perpendicular"}
 LEAST = 90  # steps: shorter explorations are as soon done in one call
 TRY = 20  # conflicts for a question whose answer may be left open
-TRY_HARD = 20_000  # conflicts for one beginning
-STRIDE = 8  # steps, at least, from one beginning to the next
+TRY_HARD = 200_000  # conflicts for one beginning
+STRIDE = 6  # steps, at least, from one beginning to the next
 
 Heed = Callable[[], None]  # called often; raises what ends the work
 
@@ -145,9 +145,9 @@ def _limit(control: clingo.Control, conflicts: int) -> None:
 
 
 def _ends(experience: Experience, last: int) -> Iterator[int]:
-    """Steps after this one at which runs end, some way apart."""
-    for step, turn in enumerate(experience.turns):
-        if turn != experience.slots // 2 and step >= last + STRIDE:
+    """Steps after this one, some way apart, and the last one."""
+    for step in range(experience.steps):
+        if step >= last + STRIDE:
             yield step
             last = step
     yield experience.steps
