@@ -11,7 +11,7 @@ asked), so the answers stay the same. ``encodings/fast/phases/`` has the program
    gateways a visit can be, in any map of the beginning (brave consequences).
 """
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -26,6 +26,7 @@ if TYPE_CHECKING:
 NEEDED = {"closed", "perpendicular"}
 LEAST = 90  # steps: shorter explorations are as soon done in one call
 TRY = 20  # conflicts for a question whose answer may be left open
+IN_VAIN = 50  # such questions in a row: there is no more to be found
 TRY_HARD = 200_000  # conflicts for one beginning
 STRIDE = 6  # steps, at least, from one beginning to the next
 
@@ -83,39 +84,48 @@ class _Phases:
 
     def runs(self) -> None:
         control = self._grounded("phases/runs")
-        _limit(control, TRY)
         atoms = control.symbolic_atoms
+        spare = [atom.symbol.arguments[2].number for atom in atoms.by_signature("spare", 3)]
+        if min(spare, default=1) > 0:
+            return  # there are too many runs for the counting argument
         through = sorted(atom.symbol.arguments[0] for atom in atoms.by_signature("through", 1))
-        possible: set[Symbol] = set()
-
-        def note(model: clingo.Model) -> None:
-            possible.update(model.symbols(shown=True))
-
+        pairs = [(a, b) for a in through for b in through if a < b]
         for number, relation in enumerate(("joined", "grid")):
-            for pair in ((a, b) for a in through for b in through if a < b):
-                asked = Function(relation, pair)
-                if asked not in possible and self._refuted(control, asked, True, note):
-                    self._know("never", *pair, Number(number))
+            for asked in self._refuted(control, [Function(relation, pair) for pair in pairs]):
+                self._know("never", *asked.arguments, Number(number))
 
     def new(self) -> None:
         control = self._grounded("phases/topomap", "closed", "perpendicular")
-        _limit(control, TRY)
-        for atom in list(control.symbolic_atoms.by_signature("new", 1)):
-            (visit,) = atom.symbol.arguments
-            if self._refuted(control, atom.symbol, True):
-                self._know("old", visit)
-            elif self._refuted(control, atom.symbol, False):
-                self._know("new", visit)
+        asked = [atom.symbol for atom in control.symbolic_atoms.by_signature("new", 1)]
+        for old in self._refuted(control, asked):
+            self._know("old", *old.arguments)
+        for new in self._refuted(control, asked, False):
+            self._know("new", *new.arguments)
 
     def _refuted(
-        self,
-        control: clingo.Control,
-        atom: Symbol,
-        value: bool,
-        note: Callable[[clingo.Model], None] | None = None,
-    ) -> bool:
-        self._heed()
-        return bool(control.solve([(atom, value)], on_model=note).unsatisfiable)
+        self, control: clingo.Control, asked: Sequence[Symbol], value: bool = True
+    ) -> Iterator[Symbol]:
+        """Those atoms which have that value in no answer, each asked in a short call; it ends
+        when there was no such atom for long."""
+        seen: set[Symbol] = set()  # they have it in some answer
+        vain = 0
+        _limit(control, TRY)
+
+        def note(model: clingo.Model) -> None:
+            shown = set(model.symbols(atoms=True))
+            seen.update(atom for atom in asked if (atom in shown) == value)
+
+        for atom in asked:
+            self._heed()
+            if atom in seen:
+                continue
+            if control.solve([(atom, value)], on_model=note).unsatisfiable:
+                vain = 0
+                yield atom
+            else:
+                vain += 1
+                if vain == IN_VAIN:
+                    return
 
     def _know(self, name: str, *arguments: Symbol) -> None:
         self._found.append(Function(name, arguments))
