@@ -11,6 +11,7 @@ searches without it, reads answers, checks and compares them.
 ``experience``      what an exploration shows; instance files
 ``generate``        one record from which name, header and facts come
 ``solver``          clingo on the encodings: enumeration, optimal maps
+``phases``          large maps: what is certain first, by small programs
 ``hypothesis``      a node of the paper's search tree, entered and undone
 ``search``          the tree breadth-first, depth-first, best-first: the second way
 ``branching``       the paper's equation (1), node by node
