@@ -4,7 +4,8 @@ one grounds over what is left.
 All that is found holds in every closed and perpendicular map (and planar one, if that is
 asked), so the answers stay the same. ``encodings/fast/phases/`` has the programs:
 
-1. ``visits.lp``: which visits can be of one place, by pairs; settled while grounding.
+1. ``visits.lp``: which visits can be of one place, by pairs; settled while grounding. The
+   others follow only where the counting argument of ``runs.lp`` applies.
 2. ``runs.lp``: which runs never cross and never lie on one path; a call for each pair.
 3. the theory without planarity: which visits are the first of their place; a call for each.
 4. the theory with planarity, on longer and longer beginnings of the exploration: at which
@@ -47,11 +48,11 @@ def found(experience: Experience, query: "Query", folder: Path, heed: Heed) -> s
     if query.horizon is not None:
         experience = experience.cut(query.horizon)
     work = _Phases(experience.facts(), folder, heed)
-    work.visits()
-    work.runs()
-    work.new()
-    if "planar" in query.parts:
-        work.beginnings(experience)
+    if work.visits():
+        work.runs()
+        work.new()
+        if "planar" in query.parts:
+            work.beginnings(experience)
     return work.facts()
 
 
@@ -76,18 +77,18 @@ class _Phases:
         self._heed()
         return control
 
-    def visits(self) -> None:
+    def visits(self) -> bool:
+        """Whether it is worth while to go on."""
         control = self._grounded("phases/visits")
         with control.solve(yield_=True) as models:
-            for model in models:
-                self._pairs = model.symbols(shown=True)
+            (shown,) = [model.symbols(shown=True) for model in models]
+        few = Function("few")
+        self._pairs = [symbol for symbol in shown if symbol != few]
+        return few in shown
 
     def runs(self) -> None:
         control = self._grounded("phases/runs")
         atoms = control.symbolic_atoms
-        spare = [atom.symbol.arguments[2].number for atom in atoms.by_signature("spare", 3)]
-        if min(spare, default=1) > 0:
-            return  # there are too many runs for the counting argument
         through = sorted(atom.symbol.arguments[0] for atom in atoms.by_signature("through", 1))
         pairs = [(a, b) for a in through for b in through if a < b]
         for number, relation in enumerate(("joined", "grid")):
