@@ -73,14 +73,22 @@ AGGREGATES = {
     "bound": ["places < #count { P: new(P) }"],
     "input": ["M = #max { T: turned(T) }"],
     "theory/places": ["1 = { at(T,P,S): fits(T,P,S) }"],
+    "fast/core/places": ["1 = { at(T,P,S): may(P,T,S), first(P), not found(out(T,P,S)) }"],
+    "fast/planar": ["1 <= { may(Q,(T-1),X): first(Q) } <= 1"],
+    "fast/phases/counts": [
+        "N = #count { T: pass(A,T,_), cross(T) }",
+        "L = #count { C: through(C) }",
+    ],
+    "fast/phases/runs": ["{ touch(A,B) }", "{ corner(A,B) }", "{ crossing(A,B) }"],
 }
 
 
 @pytest.mark.parametrize("file", [file for file in STATED if file != "check"])
 def test_no_body_weighs_or_counts_derived_atoms(file):
     """clasp miscounts on such bodies (docs/clasp.md): bound.lp counts new/1 alone, each
-    atom of which is one chosen atom; input.lp takes the largest of facts; the choice in
-    places.lp is of distinct atoms. Of check.lp nothing reaches clasp (test_check.py)."""
+    atom of which is one chosen atom; input.lp takes the largest of facts; the choices in
+    places.lp are of distinct atoms; those in runs.lp have no bound; fast/planar.lp and
+    fast/phases/counts.lp count facts. Of check.lp nothing reaches clasp (test_check.py)."""
     aggregates = []
 
     class Finder(ast.Transformer):
