@@ -136,6 +136,20 @@ def test_an_interrupted_table_says_so(tmp_path):
     assert not any(tmp_path.iterdir())
 
 
+def test_a_timeout_and_an_interrupt_end_the_phases(topomap, tmp_path):
+    """They take long."""
+    topomap("generate", "grid", "20", "20", "--route", "snake", "-o", tmp_path)
+    (into := tmp_path / "answers").mkdir()
+    asked = "solve", tmp_path / "grid-20x20-snake.lp", "--closed", "--perpendicular", "--planar"
+    done = topomap(*asked, "--timeout", "1", timeout=120)
+    assert done.returncode == 3
+    assert done.stdout == "0 consistent maps; partial: timeout\n"
+    file = into / "maps.json"
+    interrupted(signal.SIGINT, into, *asked, "--json", "-o", file)
+    answer = json.loads(file.read_text())
+    assert (answer["complete"], answer["fault"], answer["maps"]) == (False, "interrupted", [])
+
+
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_an_interrupt_keeps_what_was_found(tmp_path, number):
     file = tmp_path / "maps.json"

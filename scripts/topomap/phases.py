@@ -31,7 +31,8 @@ IN_VAIN = 50  # such questions in a row: there is no more to be found
 TRY_HARD = 200_000  # conflicts for one beginning
 STRIDE = 6  # steps, at least, from one beginning to the next
 
-Heed = Callable[[], None]  # called often; raises what ends the work
+# Called often, with the control that is solved next; raises what ends the work.
+Heed = Callable[[clingo.Control], None]
 
 
 def serve(experience: Experience, query: "Query") -> bool:
@@ -43,7 +44,8 @@ def serve(experience: Experience, query: "Query") -> bool:
 def found(experience: Experience, query: "Query", folder: Path, heed: Heed) -> str:
     """Facts for ``phases/topomap.lp`` that hold in every map which the query asks for.
 
-    ``folder`` has the fast encodings; ``heed`` is called between two calls of clingo.
+    ``folder`` has the fast encodings; ``heed`` is called between two calls of clingo. The
+    controls that it is given may be interrupted; what is found is then less, and as true.
     """
     if query.horizon is not None:
         experience = experience.cut(query.horizon)
@@ -68,20 +70,22 @@ class _Phases:
         return "".join(f"{symbol}.\n" for symbol in [*self._pairs, *found])
 
     def _grounded(self, *files: str, arguments: Iterable[str] = ()) -> clingo.Control:
-        self._heed()
         control = clingo.Control([*arguments])
+        self._heed(control)
         for file in files:
             control.load(str(self._folder / f"{file}.lp"))
         control.add("base", [], self._facts + self.facts())
         control.ground()
-        self._heed()
+        self._heed(control)
         return control
 
     def visits(self) -> bool:
         """Whether it is worth while to go on."""
         control = self._grounded("phases/visits")
+        shown: Sequence[Symbol] = []
         with control.solve(yield_=True) as models:
-            (shown,) = [model.symbols(shown=True) for model in models]
+            for model in models:
+                shown = model.symbols(shown=True)
         few = Function("few")
         self._pairs = [symbol for symbol in shown if symbol != few]
         return few in shown
@@ -117,7 +121,7 @@ class _Phases:
             seen.update(atom for atom in asked if (atom in shown) == value)
 
         for atom in asked:
-            self._heed()
+            self._heed(control)
             if atom in seen:
                 continue
             if control.solve([(atom, value)], on_model=note).unsatisfiable:
@@ -143,7 +147,7 @@ class _Phases:
             found: set[Symbol] = set()
             with control.solve(yield_=True) as models:
                 for model in models:
-                    self._heed()
+                    self._heed(control)
                     found = set(model.symbols(shown=True))
                 if not models.get().exhausted:
                     return  # later ones are larger

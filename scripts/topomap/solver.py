@@ -153,6 +153,7 @@ class Program:
         entry = "phases/topomap" if self._phased else "topomap"
         self.control = query.control(experience.facts(), entry)
         self._grounded = self._interrupted = False
+        self._solved = self.control  # now or next
 
     def solve(
         self,
@@ -163,19 +164,22 @@ class Program:
         """Solve it, with the hypotheses that begin with a cube as the only ones."""
         if not self._grounded:
             if self._phased:
-                self.control.add("base", [], phases.found(*self.asked, FORMS["fast"], self._heed))
+                facts = phases.found(*self.asked, FORMS["fast"], self._heed)
+                self._heed(self.control)
+                self.control.add("base", [], facts)
             self.control.ground()
             self._grounded = True
         self.control.solve([*_assumed(cube), *more], on_model=on_model)
 
-    def _heed(self) -> None:
+    def _heed(self, control: clingo.Control) -> None:
+        self._solved = control
         if self._interrupted:
             raise Stopped(INTERRUPT)
 
     def interrupt(self) -> None:
         """End the call of another thread, as soon as it has grounded."""
         self._interrupted = True
-        self.control.interrupt()
+        self._solved.interrupt()
 
     def keep(self) -> None:
         """Have it at hand, with what it has learnt, if this thread asks for it again."""

@@ -1,0 +1,345 @@
+"""Large closed perpendicular maps in phases: the answers are those of the plain encoding and of
+the search, and what each phase finds is true of every map."""
+
+import json
+import random
+from itertools import combinations, combinations_with_replacement, pairwise
+
+import pytest
+from conftest import TRIED
+from topomap import phases, search, solver
+from topomap.environment import grid, maze, world
+from topomap.experience import Experience, explore
+from topomap.generate import instance
+from topomap.solver import FORMS, Program, Query, Stopped, Watch
+from topomap.topology import TopologicalMap
+from worlds import WORLDS, random_world
+
+QUIET = Watch(quiet=True)
+SQUARE = ("closed", "perpendicular")
+MORE = [
+    (),
+    ("planar",),
+    ("planar", "boundary"),
+    ("minimal",),
+    ("boundary", "minimal", "planar"),
+    ("genus",),
+    ("euler",),
+    ("planar", "travelled"),
+    ("planar", "euler", "genus", "minimal"),
+]
+
+
+@pytest.fixture(autouse=True)
+def always(monkeypatch):
+    """Have short explorations done in phases too."""
+    monkeypatch.setattr(phases, "LEAST", 0)
+    monkeypatch.setattr(phases, "STRIDE", 3)
+
+
+def crossing_streets(draw: random.Random) -> TopologicalMap:
+    """Streets, some of which cross, no three each other: where two do there is a place, at
+    the end of a street or in its midst. As a rule it has no plane drawing."""
+    while True:
+        number = draw.randint(2, 6)
+        crossings: set[tuple[int, int]] = set()
+        for pair in draw.sample(sorted(combinations(range(number), 2)), number * (number - 1) // 2):
+            near = [{a for other in crossings if b in other for a in other} for b in pair]
+            if draw.random() < 0.7 and not near[0] & near[1]:
+                crossings.add(pair)
+        links = {}
+        turned = {place: draw.randint(0, 3) for place in crossings}
+        for street in range(number):
+            ahead = draw.choice([0, 2])
+            places = [place for place in sorted(crossings) if street in place]
+            lone = [(street, street, n) for n in range(draw.choice([0, 0, 1, 2]))]
+            places = draw.sample([*places, *lone], len(places) + len(lone))
+            for here, there in pairwise(places):
+                side = [(turned.get(p, 0) + p.index(street)) % 4 for p in (here, there)]
+                out, back = (here, (side[0] + ahead) % 4), (there, (side[1] + ahead + 2) % 4)
+                links |= {out: back, back: out}
+        if links:
+            return world(4, links)
+
+
+def square_world(draw: random.Random) -> TopologicalMap:
+    """A closed world which is as a rule perpendicular: a grid with ways missing, a maze, or
+    streets; or any one; with signs or without."""
+    rows, columns = draw.randint(2, 3), draw.randint(2, 4)
+    kind = draw.choice(["grid", "maze", "streets", "streets", "any"])
+    if kind == "grid":
+        kept = [edge for edge in grid(rows, columns).map.edges() if draw.random() < 0.9]
+        made = world(4, dict(kept) | {b: a for a, b in kept}) if kept else grid(2, 2).map
+    elif kind == "maze":
+        made = maze(rows, columns, draw.choice([0, 0.3, 1]), draw.randint(0, 10**6)).map
+    elif kind == "streets":
+        made = crossing_streets(draw)
+    else:
+        made = random_world(draw)
+        while made.slots != 4:
+            made = random_world(draw)
+    marked = [place for place in made.stars if draw.random() < draw.choice([0, 0, 0.3])]
+    signs = {place: frozenset(draw.choice("ab")) for place in marked}
+    return TopologicalMap(4, made.stars, made.links, signs)
+
+
+def toured(draw: random.Random, most: int) -> tuple[Experience, int | None]:
+    """A walk on which, as a rule, all ways of a square world are taken, most of them but
+    once; and a horizon, as a rule none."""
+    while True:
+        made = square_world(draw)
+        start = place, slot = draw.choice(sorted(made.links))
+        route, taken = [], set()
+        waste = draw.choice([0, 0.1, 0.3])
+        while len(route) < most:
+            left = [s for s in sorted(made.stars[place]) if (place, s) not in taken]
+            straight = (slot + 2) % 4
+            if left and draw.random() >= waste:
+                slot = straight if straight in left and draw.random() < 0.7 else draw.choice(left)
+            elif (way := way_to_new(made, place, taken)) is not None:
+                slot = way if draw.random() >= waste else draw.choice(sorted(made.stars[place]))
+            else:
+                break
+            route.append(slot)
+            there = made.links[place, slot]
+            taken |= {(place, slot), there}
+            place, slot = there
+        if len(route) < most:
+            experience = explore(made, start, route)[0]
+            cut = experience.steps + draw.randint(-3, 1)
+            return experience, max(cut, 0) if draw.random() < 0.2 else None
+
+
+def way_to_new(made: TopologicalMap, place, taken) -> int | None:
+    """The slot by which the nearest place with a way not taken is reached."""
+    first = {place: None}
+    for here in (reached := [place]):
+        for slot in sorted(made.stars[here]):
+            if (here, slot) not in taken and first[here] is not None:
+                return first[here]
+            there = made.links[here, slot][0]
+            if there not in first:
+                first[there] = slot if first[here] is None else first[here]
+                reached.append(there)
+    return None
+
+
+def found(way, experience, parts, form="fast", horizon=None, places=None):
+    """The hypotheses of a query; of the least cost, if it minimises."""
+    query = Query(frozenset(parts), places, horizon, form)
+    if form == "fast":
+        assert phases.serve(experience, query)
+    answers = [each.at for each in way(experience, query, QUIET) if each.proved]
+    assert len(answers) == len(set(answers))
+    return set(answers)
+
+
+def agree(experience, horizon=None, more=MORE, searched=True, places=None):
+    """Demand the same answers of the phases, of the plain encoding and of the search."""
+    for parts in more:
+        asked = experience, (*SQUARE, *parts)
+        plain = found(solver.hypotheses, *asked, "plain", horizon, places)
+        TRIED["queries in phases"] += 1
+        TRIED["queries in phases that had an answer"] += bool(plain)
+        assert found(solver.hypotheses, *asked, "fast", horizon, places) == plain, (
+            experience.facts(),
+            parts,
+            horizon,
+            places,
+        )
+        if searched:
+            assert found(search.hypotheses, *asked, "plain", horizon, places) == plain
+    return plain
+
+
+def squared(draw, most):
+    """The case, and how it is asked for: some of the parts, and as a rule no bound."""
+    return (*toured(draw, most), draw.sample(MORE, 3), draw.choice([None] * 5 + [4, 6]))
+
+
+@pytest.mark.parametrize("block", range(3))
+def test_random_worlds(block):
+    """A third of the queries, and more, have an answer."""
+    answered = TRIED["queries in phases that had an answer"]
+    for number in range(12):
+        experience, horizon, more, places = squared(random.Random(f"{block}/{number}"), 20)
+        small = experience.steps < 12
+        agree(experience, horizon, more, searched=small, places=places)
+    assert TRIED["queries in phases that had an answer"] >= answered + 12
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("block", range(10))
+def test_many_random_worlds(block):
+    for number in range(100):
+        experience, horizon, more, places = squared(random.Random(f"long {block}/{number}"), 32)
+        agree(experience, horizon, more, searched=experience.steps < 14, places=places)
+
+
+SQUARES = {name: world for name, world in WORLDS.items() if world.slots == 4}
+TOLD = {
+    "a square": explore(grid(2, 2).map, ((0, 0), 2), [1, 2, 3, 0, 1])[0],
+    "a corridor, three times": explore(grid(1, 4).map, ((0, 1), 1), [3, 1, 1, 1, 3, 3, 3, 1, 1, 1])[
+        0
+    ],
+    "a start that is not left by": explore(grid(2, 3).map, ((0, 1), 2), [1, 2, 3, 3, 0, 1, 2])[0],
+}
+
+
+@pytest.mark.parametrize("name", [*SQUARES, *TOLD])
+def test_named_worlds(name):
+    """At any horizon near the end. Those of ``TOLD`` have a closed perpendicular map."""
+    experience = (SQUARES | TOLD)[name]
+    for less in range(min(3, experience.steps + 1) if experience.steps < 12 else 1):
+        answers = agree(experience, experience.steps - less, MORE[:2], experience.steps < 12)
+        assert answers or less or name in SQUARES
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("name", [*SQUARES, *TOLD])
+def test_named_worlds_in_every_way(name):
+    experience = (SQUARES | TOLD)[name]
+    for horizon in range(experience.steps + 1):
+        agree(experience, horizon)
+    for places in range(1, experience.steps + 2):
+        agree(experience, places=places, more=MORE[:2])
+
+
+def claims(experience, names):
+    """What these phases find, and those that all begin with."""
+    work = phases._Phases(experience.facts(), FORMS["fast"], lambda _: None)
+    for name in ("visits", *names):
+        getattr(work, name)(*[experience] * (name == "beginnings"))
+    return work._pairs, work._found
+
+
+class Map:
+    """A map, for asking whether a claim is true of it."""
+
+    def __init__(self, experience, at):
+        self.at, made = at, experience.map_of(at)
+        runs = [step for step, turn in enumerate(experience.turns, 1) if step == 1 or turn != 2]
+        paths = [{(place, slot % 2) for place, slot in path} for path in made.paths()]
+        of = {line: number for number, path in enumerate(paths) for line in path}
+        self.path = {run: of[at[run][0], at[run][1] % 2] for run in runs}
+        full = [place for place, star in made.stars.items() if len(star) == 4]
+        self.crossing = {frozenset((of[place, 0], of[place, 1])) for place in full}
+
+    def same(self, old, step, slot):
+        (one, before), (other, after) = self.at[old], self.at[step]
+        return one == other and (after - before) % 4 == slot
+
+    def accepts(self, name, *numbers):
+        """Whether what was found is true."""
+        step = numbers[0]
+        if name == "never":
+            one, other, crossing = self.path[step], self.path[numbers[1]], numbers[2]
+            return frozenset((one, other)) not in self.crossing if crossing else one != other
+        if name == "out":
+            return self.at[step] != tuple(numbers[1:])
+        return (self.at[step][0] == step) == {"new": True, "old": False}[name]
+
+
+CHAINS = [("runs",), ("new",), ("beginnings",), ("runs", "new"), ("runs", "new", "beginnings")]
+
+
+def are_true(experience, chain):
+    """Demand that what these phases find is true of every map for which it is said."""
+    parts = {*SQUARE, *(["planar"] if "beginnings" in chain else [])}
+    maps = found(solver.hypotheses, experience, parts, "plain")
+    pairs, known = claims(experience, chain)
+    fits = {tuple(a.number for a in pair.arguments) for pair in pairs if pair.name == "fits"}
+    for at in maps:
+        judge = Map(experience, at)
+        for old, step in combinations_with_replacement(range(len(at)), 2):
+            slots = [slot for slot in range(4) if judge.same(old, step, slot)]
+            assert {(old, step, slot) for slot in slots} <= fits, experience.facts()
+        for pair in pairs:
+            if pair.name == "iff":
+                numbers = [a.number for a in pair.arguments]
+                there = judge.same(*numbers[3:])
+                assert judge.same(*numbers[:3]) == there, (str(pair), experience.facts())
+        for fact in known:
+            TRIED[f"claims of the phases: {fact.name}"] += 1
+            assert judge.accepts(fact.name, *(a.number for a in fact.arguments)), (
+                str(fact),
+                experience.facts(),
+            )
+
+
+@pytest.mark.parametrize("chain", CHAINS, ids="-".join)
+def test_what_a_phase_finds_is_true(chain):
+    for number in range(12):
+        are_true(toured(random.Random(f"claims {number}"), 20)[0], chain)
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("chain", CHAINS, ids="-".join)
+def test_what_a_phase_finds_is_often_true(chain):
+    for number in range(150):
+        are_true(toured(random.Random(f"many claims {number}"), 32)[0], chain)
+
+
+def test_each_phase_finds_something():
+    """And all that is found of a snake is true of its real map."""
+    made = instance(grid(5, 5), "snake")
+    pairs, known = claims(made.experience, ("runs", "new", "beginnings"))
+    judge = Map(made.experience, made.truth)
+    assert all(judge.accepts(f.name, *(a.number for a in f.arguments)) for f in known)
+    assert {fact.name for fact in known} == {"never", "new", "old", "out"}
+    assert {fact.arguments[2].number for fact in known if fact.name == "never"} == {0, 1}
+    assert {pair.name for pair in pairs} == {"fits", "iff"}
+
+
+def test_the_snake_of_6x6():
+    made = instance(grid(6, 6), "snake")
+    assert found(solver.hypotheses, made.experience, (*SQUARE, "planar")) == {made.truth}
+
+
+@pytest.mark.long
+def test_the_snake_of_8x8(topomap, tmp_path):
+    topomap("generate", "grid", "8", "8", "--route", "snake", "-o", tmp_path)
+    topomap("generate", "grid", "8", "8", "--route", "snake", "--truth", tmp_path / "truth.json")
+    file = tmp_path / "grid-8x8-snake.lp"
+    done = topomap("solve", file, "--closed", "--perpendicular", "--planar", "--json")
+    answer = json.loads(done.stdout)
+    truth = instance(grid(8, 8), "snake").truth
+    assert answer["complete"] is True
+    assert [[tuple(dstate) for _, *dstate in each["at"]] for each in answer["maps"]] == [[*truth]]
+
+
+@pytest.mark.parametrize("late", [False, True])
+def test_phases_end_when_they_are_told(monkeypatch, late):
+    """Before a call of clingo or in its midst, at whichever call: the next is not begun."""
+    small = instance(grid(4, 4), "snake").experience
+    query, heed, asked, end = Query(frozenset(SQUARE)).having("planar"), Program._heed, [], 0
+
+    def tell(program, _):
+        if len(asked) == end:
+            program.interrupt()
+
+    def note(program, control):
+        asked.append(control)
+        for act in (heed, tell) if late else (tell, heed):
+            act(program, control)
+
+    monkeypatch.setattr(Program, "_heed", note)
+    Program(small, query).solve(())
+    calls = len(asked)
+    for end in range(1, calls, max(1, calls // 20)):
+        asked.clear()
+        with pytest.raises(Stopped, match="interrupted"):
+            Program(small, query).solve(())
+        assert len(asked) == end + late
+
+
+def test_phases_that_run_out_of_memory_say_so(monkeypatch):
+    def full(*_):
+        raise MemoryError
+
+    monkeypatch.setattr(phases, "found", full)
+    query = Query(frozenset(SQUARE))
+    with pytest.raises(Stopped, match="out of memory"):
+        list(solver.hypotheses(WORLDS["to and fro"], query, QUIET))
+    with pytest.raises(Stopped, match="out of memory"):
+        solver.count(WORLDS["to and fro"], query)
