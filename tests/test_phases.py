@@ -38,22 +38,26 @@ def always(monkeypatch):
 
 
 def crossing_streets(draw: random.Random) -> TopologicalMap:
-    """Streets, some of which cross, no three each other: where two do there is a place, at
-    the end of a street or in its midst. As a rule it has no plane drawing."""
+    """Streets, some of which cross, no three each other: where two do there is a place, in
+    the midst of a street or at its end. As a rule it has no plane drawing."""
     while True:
         number = draw.randint(2, 6)
         crossings: set[tuple[int, int]] = set()
+        rate = draw.choice([0.7, 0.9, 1])
         for pair in draw.sample(sorted(combinations(range(number), 2)), number * (number - 1) // 2):
             near = [{a for other in crossings if b in other for a in other} for b in pair]
-            if draw.random() < 0.7 and not near[0] & near[1]:
+            if draw.random() < rate and not near[0] & near[1]:
                 crossings.add(pair)
-        links = {}
         turned = {place: draw.randint(0, 3) for place in crossings}
+        full = draw.random() < 0.5  # all streets end at dead ends
+        links = {}
         for street in range(number):
-            ahead = draw.choice([0, 2])
             places = [place for place in sorted(crossings) if street in place]
             lone = [(street, street, n) for n in range(draw.choice([0, 0, 1, 2]))]
             places = draw.sample([*places, *lone], len(places) + len(lone))
+            if full:
+                places = [(street, street, 3), *places, (street, street, 4)]
+            ahead = draw.choice([0, 2])
             for here, there in pairwise(places):
                 side = [(turned.get(p, 0) + p.index(street)) % 4 for p in (here, there)]
                 out, back = (here, (side[0] + ahead) % 4), (there, (side[1] + ahead + 2) % 4)
