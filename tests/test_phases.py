@@ -87,11 +87,11 @@ def square_world(draw: random.Random) -> TopologicalMap:
     return TopologicalMap(4, made.stars, made.links, signs)
 
 
-def toured(draw: random.Random, most: int) -> tuple[Experience, int | None]:
+def toured(draw: random.Random, most: int, make=square_world) -> tuple[Experience, int | None]:
     """A walk on which, as a rule, all ways of a square world are taken, most of them but
     once; and a horizon, as a rule none."""
     while True:
-        made = square_world(draw)
+        made = make(draw)
         start = place, slot = draw.choice(sorted(made.links))
         route, taken = [], set()
         waste = draw.choice([0, 0.1, 0.3])
@@ -170,6 +170,28 @@ def test_random_worlds(block):
         small = experience.steps < 12
         agree(experience, horizon, more, searched=small, places=places)
     assert TRIED["queries in phases that had an answer"] >= answered + 12
+
+
+def test_streets():
+    for number in range(20):
+        experience, _ = toured(random.Random(f"streets {number}"), 18, crossing_streets)
+        agree(experience, None, MORE[:2], searched=False)
+
+
+def test_what_is_asked_up_to_a_step_is_not_told_by_later_ones():
+    route = ["NESW".index(way) for way in "ESSENNESSWWWNEEENWWWS" + "NEEESWSENNWWWSSE"]
+    experience = explore(grid(3, 4).map, ((0, 0), 1), route)[0]
+    assert len(agree(experience, 21, MORE[:1], searched=False)) == 8
+    assert len(agree(experience, None, MORE[:1], searched=False)) < 8
+
+
+@pytest.mark.parametrize("tries", [1, 5, 20])
+def test_a_question_that_is_given_up_tells_nothing(monkeypatch, tries):
+    monkeypatch.setattr(phases, "TRY_HARD", tries)
+    made = instance(grid(5, 5), "snake")
+    _, known = claims(made.experience, ("beginnings",))
+    judge = Map(made.experience, made.truth)
+    assert all(judge.accepts(f.name, *(a.number for a in f.arguments)) for f in known)
 
 
 @pytest.mark.long
@@ -303,7 +325,6 @@ def test_the_snake_of_6x6():
 @pytest.mark.long
 def test_the_snake_of_8x8(topomap, tmp_path):
     topomap("generate", "grid", "8", "8", "--route", "snake", "-o", tmp_path)
-    topomap("generate", "grid", "8", "8", "--route", "snake", "--truth", tmp_path / "truth.json")
     file = tmp_path / "grid-8x8-snake.lp"
     done = topomap("solve", file, "--closed", "--perpendicular", "--planar", "--json")
     answer = json.loads(done.stdout)
