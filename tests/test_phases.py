@@ -351,7 +351,7 @@ def test_phases_end_when_they_are_told(monkeypatch, late):
     monkeypatch.setattr(Program, "_heed", note)
     Program(small, query).solve(())
     calls = len(asked)
-    for end in range(1, calls, max(1, calls // 20)):
+    for end in range(1, calls, max(1, calls // 8)):
         asked.clear()
         with pytest.raises(Stopped, match="interrupted"):
             Program(small, query).solve(())
