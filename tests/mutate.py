@@ -49,8 +49,8 @@ when one gives other answers (other models, shown atoms or costs, or a model twi
 when clingo has an error or a message for it, *endless* when a query takes more than {seconds}
 seconds of the processor or {memory} MiB of memory. When all answers are right, a mutant of
 `fast/`, whose worth is in its size, is *larger* if it grounds to more rules, over all named
-experiences with all the parts. Another one is *equivalent* if `tests/equivalent.toml` says
-why, and has *survived* if not. Comments and `#include` are not mutated.
+experiences with all the parts and some of what `fast/phases/` is asked. Another one is
+*equivalent* if `tests/equivalent.toml` says why, and has *survived* if not. Comments and `#include` are not mutated.
 """
 COMPLEMENT = {
     ast.ComparisonOperator.Equal: ast.ComparisonOperator.NotEqual,
@@ -213,16 +213,13 @@ def tried(program: str, query: Query) -> str:
     return "survived" if right else "killed"
 
 
-def rules(programs: dict[tuple[str, ...], str], measured: list[Query]) -> int:
-    """How many rules these programs ground to."""
-    total = 0
-    for query in measured:
-        control = clingo.Control(["1", "--opt-mode=ignore"])
-        control.add("base", [], programs[query.files] + query.facts)
-        control.ground([("base", [])])
-        control.solve()
-        total += int(control.statistics["problem"]["lp"]["rules"])
-    return total
+def rules(program: str, facts: str) -> int:
+    """How many rules a program grounds to."""
+    control = clingo.Control(["1", "--opt-mode=ignore"])
+    control.add("base", [], program + facts)
+    control.ground([("base", [])])
+    control.solve()
+    return int(control.statistics["problem"]["lp"]["rules"])
 
 
 def suffer(programs: dict[tuple[str, ...], str], asked: list[Query]) -> str:
@@ -248,15 +245,11 @@ def fates(
     names = set().union(*loaded.values())
     texts = {file: list(map(str, statements(folder, file))) for file in names}
 
-    def programs(file: str) -> dict[tuple[str, ...], str]:
-        return {
-            files: "\n".join(text for name in every for text in texts[name])
-            for files, every in loaded.items()
-            if tries(files, every, file)
-        }
+    def program(files: tuple[str, ...]) -> str:
+        return "\n".join(text for name in loaded[files] for text in texts[name])
 
     fast = any(mutant.file.startswith(FAST) for mutant in chosen)
-    least = rules(programs(f"{FAST}topomap"), measured) if fast else 0
+    least = [(query, rules(program(query.files), query.facts)) for query in measured if fast]
     waiting = list(reversed(chosen))
     running: dict[int, Mutant] = {}
     try:
@@ -269,11 +262,20 @@ def fates(
                 code = len(FATES)
                 try:
                     texts[mutant.file][mutant.number] = mutant.text
-                    mutated = programs(mutant.file)
+                    mutated = {
+                        files: program(files)
+                        for files, every in loaded.items()
+                        if tries(files, every, mutant.file)
+                    }
                     fate = suffer(mutated, [query for query in asked if query.files in mutated])
                     if fate == "survived" and mutant.file.startswith(FAST):
                         signal.setitimer(signal.ITIMER_PROF, SECONDS * len(measured))
-                        fate = "larger" if rules(mutated, measured) > least else fate
+                        more = sum(
+                            rules(mutated[query.files], query.facts) - number
+                            for query, number in least
+                            if query.files in mutated
+                        )
+                        fate = "larger" if more > 0 else fate
                     code = FATES.index(fate)
                 finally:
                     os._exit(code)
