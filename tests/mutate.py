@@ -18,7 +18,7 @@ import tomllib
 from collections import Counter
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from itertools import groupby
+from itertools import groupby, product
 from pathlib import Path
 
 import clingo
@@ -50,7 +50,8 @@ when clingo has an error or a message for it, *endless* when a query takes more 
 seconds of the processor or {memory} MiB of memory. When all answers are right, a mutant of
 `fast/`, whose worth is in its size, is *larger* if it grounds to more rules, over all named
 experiences with all the parts and some of what `fast/phases/` is asked. Another one is
-*equivalent* if `tests/equivalent.toml` says why, and has *survived* if not. Comments and `#include` are not mutated.
+*equivalent* if `tests/equivalent.toml` says why, and has *survived* if not. Comments and
+`#include` are not mutated.
 """
 COMPLEMENT = {
     ast.ComparisonOperator.Equal: ast.ComparisonOperator.NotEqual,
@@ -291,12 +292,18 @@ def fates(
 
 
 def listed(path: Path) -> dict[Key, str]:
-    """The mutants that a file lists as equivalent, each with the reason."""
+    """The mutants that a file lists as equivalent, each with the reason: of an entry, every
+    change of every rule in every file that it names."""
+
+    def several(value: str | list[str]) -> list[str]:
+        return [value] if isinstance(value, str) else value
+
     try:
         found = {}
         for entry in tomllib.loads(path.read_text(encoding="utf-8"))["equivalent"]:
-            for change in entry["changes"]:
-                found[entry["file"], entry["rule"], change] = entry["reason"].strip()
+            named = several(entry["file"]), several(entry["rule"]), entry["changes"]
+            for key in product(*named):
+                found[key] = entry["reason"].strip()
     except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
         raise InputError(f"{path}: {error!r}") from None
     return found

@@ -34,10 +34,9 @@ class Pairs:
             for p in range(1, t + 1)
         ]
         # A pair whose partner is none is none itself.
-        while (
-            gone := {one for pair in ways if not self.may.issuperset(pair) for one in pair}
-            & self.may
-        ):
+        while gone := {one for pair in ways if not self.may.issuperset(pair) for one in pair}:
+            if gone.isdisjoint(self.may):
+                break
             self.may -= gone
         self.ways = [(one, other) for one, other in ways if one in self.may]
 
