@@ -16,7 +16,7 @@ from flawed import DEMANDS, INSTANCES, by_hand, drawn
 from topomap.check import by_definition
 from topomap.experience import Experience
 from topomap.solver import FORMS
-from worlds import WORLDS, random_experience
+from worlds import WORLDS, of_grid, random_experience
 
 
 def seen(*steps, slots=4):
@@ -108,6 +108,20 @@ EXPERIENCES = {
 DRAWN = [*((seed, 8, seed % 3) for seed in range(100)), (602, 14, 0), (2408, 12, 0)]
 
 
+# Walks whose runs meet at places of four gateways, found by such a search.
+WALKS = [
+    of_grid(2, 3, "grid", (1, 2, 0), "WNSNWS"),
+    of_grid(4, 4, "grid", (2, 0, 2), "ESEWN"),
+    of_grid(3, 3, "grid", (2, 2, 3), "WWNNSENE"),
+    of_grid(4, 4, "grid", (3, 1, 3), "EENN"),
+    of_grid(3, 3, "cylinder", (2, 1, 1), "NENWWWWWWSSWW"),
+    of_grid(3, 3, "grid", (1, 2, 2), "NWWSSE"),
+    of_grid(3, 3, "cylinder", (1, 2, 1), "WSWWNNWWEE"),
+    of_grid(4, 4, "grid", (2, 1, 3), "ENWNEEWWWSSNN"),
+    of_grid(4, 4, "grid", (2, 1, 1), "WNSSEENW"),
+]
+
+
 Answers = frozenset[tuple[tuple[int, ...], frozenset[str]]]
 
 
@@ -190,6 +204,7 @@ def phases() -> Iterator[Query]:
     path or cross; and the hypotheses that are left by what was found."""
     draw = random.Random("phases")
     experiences = [*(EXPERIENCES | WORLDS).values()]
+    experiences += WALKS
     experiences += [random_experience(random.Random(f"corpus {seed}"), 8) for seed in range(60)]
     for experience in experiences:
         facts = experience.facts()
