@@ -119,6 +119,8 @@ WALKS = [
     of_grid(3, 3, "cylinder", (1, 2, 1), "WSWWNNWWEE"),
     of_grid(4, 4, "grid", (2, 1, 3), "ENWNEEWWWSSNN"),
     of_grid(4, 4, "grid", (2, 1, 1), "WNSSEENW"),
+    of_grid(3, 3, "grid", (0, 1, 2), "SNWSE"),
+    of_grid(3, 3, "grid", (0, 1, 2), "SNWSEESWN"),
 ]
 
 
