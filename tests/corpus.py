@@ -10,12 +10,13 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cache
 
+import phased
 from conftest import ENCODINGS, PARTS, Truth
 from flawed import DEMANDS, INSTANCES, by_hand, drawn
 from topomap.check import by_definition
 from topomap.experience import Experience
 from topomap.solver import FORMS
-from worlds import WORLDS, random_experience
+from worlds import WORLDS, of_grid, random_experience
 
 
 def seen(*steps, slots=4):
@@ -107,6 +108,22 @@ EXPERIENCES = {
 DRAWN = [*((seed, 8, seed % 3) for seed in range(100)), (602, 14, 0), (2408, 12, 0)]
 
 
+# Walks whose runs meet at places of four gateways, found by such a search.
+WALKS = [
+    of_grid(2, 3, "grid", (1, 2, 0), "WNSNWS"),
+    of_grid(4, 4, "grid", (2, 0, 2), "ESEWN"),
+    of_grid(3, 3, "grid", (2, 2, 3), "WWNNSENE"),
+    of_grid(4, 4, "grid", (3, 1, 3), "EENN"),
+    of_grid(3, 3, "cylinder", (2, 1, 1), "NENWWWWWWSSWW"),
+    of_grid(3, 3, "grid", (1, 2, 2), "NWWSSE"),
+    of_grid(3, 3, "cylinder", (1, 2, 1), "WSWWNNWWEE"),
+    of_grid(4, 4, "grid", (2, 1, 3), "ENWNEEWWWSSNN"),
+    of_grid(4, 4, "grid", (2, 1, 1), "WNSSEENW"),
+    of_grid(3, 3, "grid", (0, 1, 2), "SNWSE"),
+    of_grid(3, 3, "grid", (0, 1, 2), "SNWSEESWN"),
+]
+
+
 Answers = frozenset[tuple[tuple[int, ...], frozenset[str]]]
 
 
@@ -184,10 +201,56 @@ def hypotheses(facts: str, arguments: tuple[str, ...], truth: Truth) -> Iterator
     yield from least(("genus", "minimal"), both, truth.final)
 
 
+def phases() -> Iterator[Query]:
+    """The programs of the phases: which visits can be of one place; which runs can lie on one
+    path or cross; and the hypotheses that are left by what was found."""
+    draw = random.Random("phases")
+    experiences = [*(EXPERIENCES | WORLDS).values()]
+    experiences += WALKS
+    experiences += [random_experience(random.Random(f"corpus {seed}"), 8) for seed in range(60)]
+    for experience in experiences:
+        facts = experience.facts()
+        pairs = phased.Pairs(experience).shown()
+        yield Query(("fast/phases/visits",), facts, shown(*pairs))
+        facts += "".join(f"{atom}. " for atom in pairs)
+        truth = Truth(experience)
+        yield left(facts, experience, truth, [])
+        yield left(facts, experience, truth, [], "boundary")
+        founds = [[]]
+        if truth.final:
+            at = draw.choice(sorted(truth.final))
+            few, many, every = (phased.drawn(draw, experience, at, rate) for rate in (0.1, 0.4, 1))
+            # Which visits are new, so that the order of the gateways is known too.
+            news = [fact for fact in every if fact[0] in ("new", "old")]
+            founds += [few, many, news]
+            yield left(facts, experience, truth, few, "planar")
+            yield left(facts, experience, truth, many, "closed", "perpendicular")
+            yield left(facts, experience, truth, news, "planar")
+        for found in founds:
+            if experience.slots == 4 and (ways := phased.runs(experience, found)) is not None:
+                answers = frozenset(((), way) for way in ways)
+                files = ("fast/phases/runs",)
+                yield Query(files, facts + phased.text(found), answers, ("--project",))
+
+
+def left(facts: str, experience: Experience, truth: Truth, found: list, *parts: str) -> Query:
+    """What is asked where something was found: the hypotheses in which it is so."""
+    answers = frozenset(
+        ((), frozenset(f"at({t},{p},{s})" for t, (p, s) in enumerate(at)))
+        for at in truth.having(*parts)
+        if phased.so(found, experience, at)
+    )
+    files = tuple(f"fast/{name}" for name in ("phases/topomap", *parts))
+    return Query(files, facts + phased.text(found), answers)
+
+
 def sizes() -> list[Query]:
-    """What the size of the fast encodings is taken by: each experience with all the parts."""
+    """What the size of the fast encodings is taken by: each experience with all the parts, and
+    one in five of what is asked of the phases."""
     files = tuple(f"fast/{part}" for part in ("topomap", "bound", *PARTS, "genus", "minimal"))
-    return [Query(files, seen.facts(), frozenset()) for seen in (EXPERIENCES | WORLDS).values()]
+    whole = [Query(files, seen.facts(), frozenset()) for seen in (EXPERIENCES | WORLDS).values()]
+    phases = [query for query in queries() if query.files[0].startswith("fast/phases/")]
+    return whole + phases[::5]
 
 
 def check() -> Iterator[Query]:
@@ -221,7 +284,7 @@ def faults() -> Iterator[Query]:
         yield Query(("input",), facts, shown(*(f"error({error})" for error in errors.split())))
 
 
-SUITES = (theory, check, demands, faults)
+SUITES = (theory, phases, check, demands, faults)
 
 
 @cache

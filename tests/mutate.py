@@ -18,7 +18,7 @@ import tomllib
 from collections import Counter
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from itertools import groupby
+from itertools import groupby, product
 from pathlib import Path
 
 import clingo
@@ -49,8 +49,9 @@ when one gives other answers (other models, shown atoms or costs, or a model twi
 when clingo has an error or a message for it, *endless* when a query takes more than {seconds}
 seconds of the processor or {memory} MiB of memory. When all answers are right, a mutant of
 `fast/`, whose worth is in its size, is *larger* if it grounds to more rules, over all named
-experiences with all the parts. Another one is *equivalent* if `tests/equivalent.toml` says
-why, and has *survived* if not. Comments and `#include` are not mutated.
+experiences with all the parts and some of what `fast/phases/` is asked. Another one is
+*equivalent* if `tests/equivalent.toml` says why, and has *survived* if not. Comments and
+`#include` are not mutated.
 """
 COMPLEMENT = {
     ast.ComparisonOperator.Equal: ast.ComparisonOperator.NotEqual,
@@ -213,16 +214,13 @@ def tried(program: str, query: Query) -> str:
     return "survived" if right else "killed"
 
 
-def rules(programs: dict[tuple[str, ...], str], measured: list[Query]) -> int:
-    """How many rules these programs ground to."""
-    total = 0
-    for query in measured:
-        control = clingo.Control(["1", "--opt-mode=ignore"])
-        control.add("base", [], programs[query.files] + query.facts)
-        control.ground([("base", [])])
-        control.solve()
-        total += int(control.statistics["problem"]["lp"]["rules"])
-    return total
+def rules(program: str, facts: str) -> int:
+    """How many rules a program grounds to."""
+    control = clingo.Control(["1", "--opt-mode=ignore"])
+    control.add("base", [], program + facts)
+    control.ground([("base", [])])
+    control.solve()
+    return int(control.statistics["problem"]["lp"]["rules"])
 
 
 def suffer(programs: dict[tuple[str, ...], str], asked: list[Query]) -> str:
@@ -248,15 +246,11 @@ def fates(
     names = set().union(*loaded.values())
     texts = {file: list(map(str, statements(folder, file))) for file in names}
 
-    def programs(file: str) -> dict[tuple[str, ...], str]:
-        return {
-            files: "\n".join(text for name in every for text in texts[name])
-            for files, every in loaded.items()
-            if tries(files, every, file)
-        }
+    def program(files: tuple[str, ...]) -> str:
+        return "\n".join(text for name in loaded[files] for text in texts[name])
 
     fast = any(mutant.file.startswith(FAST) for mutant in chosen)
-    least = rules(programs(f"{FAST}topomap"), measured) if fast else 0
+    least = [(query, rules(program(query.files), query.facts)) for query in measured if fast]
     waiting = list(reversed(chosen))
     running: dict[int, Mutant] = {}
     try:
@@ -269,11 +263,20 @@ def fates(
                 code = len(FATES)
                 try:
                     texts[mutant.file][mutant.number] = mutant.text
-                    mutated = programs(mutant.file)
+                    mutated = {
+                        files: program(files)
+                        for files, every in loaded.items()
+                        if tries(files, every, mutant.file)
+                    }
                     fate = suffer(mutated, [query for query in asked if query.files in mutated])
                     if fate == "survived" and mutant.file.startswith(FAST):
                         signal.setitimer(signal.ITIMER_PROF, SECONDS * len(measured))
-                        fate = "larger" if rules(mutated, measured) > least else fate
+                        more = sum(
+                            rules(mutated[query.files], query.facts) - number
+                            for query, number in least
+                            if query.files in mutated
+                        )
+                        fate = "larger" if more > 0 else fate
                     code = FATES.index(fate)
                 finally:
                     os._exit(code)
@@ -289,12 +292,18 @@ def fates(
 
 
 def listed(path: Path) -> dict[Key, str]:
-    """The mutants that a file lists as equivalent, each with the reason."""
+    """The mutants that a file lists as equivalent, each with the reason: of an entry, every
+    change of every rule in every file that it names."""
+
+    def several(value: str | list[str]) -> list[str]:
+        return [value] if isinstance(value, str) else value
+
     try:
         found = {}
         for entry in tomllib.loads(path.read_text(encoding="utf-8"))["equivalent"]:
-            for change in entry["changes"]:
-                found[entry["file"], entry["rule"], change] = entry["reason"].strip()
+            named = several(entry["file"]), several(entry["rule"]), entry["changes"]
+            for key in product(*named):
+                found[key] = entry["reason"].strip()
     except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
         raise InputError(f"{path}: {error!r}") from None
     return found

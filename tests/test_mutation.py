@@ -112,6 +112,13 @@ def test_a_survivor_that_is_not_listed_is_a_fault(mutated):
     assert "- `remove`: **Not listed.**" in report.splitlines()
 
 
+def test_one_entry_may_list_several_rules(mutated):
+    entry = listing(EQUIVALENT).replace("rule = '#show n/1.'", "rule = ['#show n/1.', 'n(0).']")
+    status, out, *_ = mutated(entry)
+    assert status == 1
+    assert out.splitlines()[1:] == ["listed, but killed: counter | n(0). | remove"]
+
+
 def test_a_listed_mutant_that_is_killed_or_is_none_is_a_fault(mutated):
     status, out, *_ = mutated(listing(EQUIVALENT, KILLED, STALE))
     assert status == 1
