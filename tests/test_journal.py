@@ -295,7 +295,7 @@ def test_killed_again_and_again(tmp_path, block):
         while status is None:
             process = subprocess.Popen([BIN / "topomap", *call, "-o", file, "--resume"])
             try:
-                status = process.wait(draw.uniform(0.1, 1.2) * took)
+                status = process.wait(draw.uniform(0.2, 1.5) * took)
             except subprocess.TimeoutExpired:
                 process.kill()
                 process.wait()
