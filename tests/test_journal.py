@@ -30,6 +30,12 @@ LONG_RUNS = {
 }
 
 
+def slow(name):
+    """Those runs that the default tests can do without are long."""
+    others = ("count", "solve", "solve, JSON", "solve by search", "solve by two")
+    return pytest.param(name, marks=[] if name in others else pytest.mark.long)
+
+
 @pytest.fixture(autouse=True)
 def many_units(monkeypatch):
     """Have small trees counted cube by cube, too."""
@@ -58,7 +64,7 @@ def ordered(file):
     return sorted(re.sub(r"^map \d+|,$", "", line) for line in file.read_text().splitlines())
 
 
-@pytest.mark.parametrize("name", LONG_RUNS)
+@pytest.mark.parametrize("name", [slow(name) for name in LONG_RUNS])
 def test_a_run_that_was_cut_goes_on(tmp_path, monkeypatch, name):
     whole, file = tmp_path / "whole", tmp_path / "file"
     assert main([*LONG_RUNS[name], "-o", str(whole)]) == 0

@@ -354,7 +354,7 @@ def kill_a_worker(address, when):
 @pytest.mark.parametrize(
     ("instance", "more", "kills"),
     [
-        (PAPER, [], 1),
+        pytest.param(PAPER, [], 1, marks=pytest.mark.long),
         pytest.param(SNAKE, ["--bound", "16"], 3, marks=pytest.mark.long),
         pytest.param(SNAKE, ["--planar"], 3, marks=pytest.mark.long),
     ],
