@@ -201,6 +201,11 @@ class _Last(threading.local):
 _last = _Last()
 
 
+def forget() -> None:
+    """Let go of the program that this thread has kept."""
+    _last.program = None
+
+
 def _program(experience: Experience, query: Query) -> Program:
     """The program of a query: the one that was kept, or a new one."""
     _prepare()

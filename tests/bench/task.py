@@ -56,6 +56,7 @@ class Control(clingo.Control):
 
 def told() -> dict[str, int]:
     """Rules, atoms, choices and conflicts of all clingos, unless one has not told them."""
+    solver.forget()
     gc.collect()
     return dict(Control.figures) if Control.made == Control.told else {}
 
