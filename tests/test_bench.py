@@ -235,3 +235,11 @@ def test_the_rows_are_those_of_the_table():
         "4x4 snake, any number of places, planar": 49_123,
         "5x5 snake, closed, planar, at most 5 x 5 places": 1_525,
     }
+
+
+def test_the_rules_are_told_where_maps_are_listed(bench):
+    _, document, _ = bench(
+        "--quick", "--only", "^3x3 snake, closed, perpendicular", "--repeat", "1"
+    )
+    (only,) = document["rows"]
+    assert all(of["rules"] > 1000 for way, of in only["ways"].items() if way != "search")
