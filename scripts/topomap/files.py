@@ -72,7 +72,7 @@ def output(path: str | None, parents: bool = False) -> Iterator[IO[str]]:
                 Path(file.name).chmod(0o666 & ~_umask())
                 Path(file.name).replace(target)
             except BaseException:
-                Path(file.name).unlink()
+                Path(file.name).unlink(missing_ok=True)
                 raise
     except BrokenPipeError:
         raise

@@ -4,6 +4,7 @@ The solver runs in a thread of its own, so that a time limit and Ctrl-C end it a
 moment, while it grounds too, and what was found until then is kept.
 """
 
+import _thread
 import contextlib
 import hashlib
 import queue
@@ -11,6 +12,7 @@ import signal
 import sys
 import threading
 import time
+import weakref
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
@@ -105,7 +107,10 @@ class Watch:
         self.signal = False
         self.deadline = None if timeout is None else time.monotonic() + timeout
         interval = 0.2 if sys.stderr.isatty() else 10
-        self.bar = tqdm(unit=" maps", delay=2, mininterval=interval, leave=False, disable=quiet)
+        tqdm.monitor_interval = 0  # a thread, see _in_thread
+        self.bar = tqdm(
+            unit=" maps", delay=2, mininterval=interval, miniters=0, leave=False, disable=quiet
+        )
 
     def title(self, text: str) -> None:
         """Say what is being done."""
@@ -219,13 +224,17 @@ def _program(experience: Experience, query: Query) -> Program:
     return program
 
 
+class _Life:
+    """What only a thread holds: with it, it is gone."""
+
+
 def _in_thread(
     program: Program, watch: Watch, work: Callable[[Callable[[Any], bool]], None]
 ) -> Iterator[Any]:
     """What ``work`` puts, in a thread of its own; what it puts last is False if it is to
     end. Raises Stopped at the time limit, or out of memory."""
     found: queue.Queue[Any] = queue.Queue(maxsize=1000)
-    stop = threading.Event()
+    stop, over = threading.Event(), threading.Event()
 
     def put(item: Any) -> bool:
         while not stop.is_set():
@@ -236,19 +245,24 @@ def _in_thread(
                 continue
         return not stop.is_set()
 
-    def run() -> None:
+    def run(_: object) -> None:
         try:
             _prepare()
             work(put)
             put(StopIteration())
         except Exception as error:  # raised again in the caller's thread
             put(error)
+        finally:
+            over.set()
 
-    thread = threading.Thread(target=run, daemon=True)
+    # A threading.Thread that has no memory to begin is waited for without end.
+    life = _Life()
+    alive = weakref.ref(life)
     try:
-        thread.start()
+        _thread.start_new_thread(run, (life,))
     except RuntimeError:  # there is no room for its stack
         raise Stopped(MEMORY) from None
+    del life
     ended = False
     try:
         while True:
@@ -256,6 +270,8 @@ def _in_thread(
                 item = found.get(timeout=0.1)
             except queue.Empty:
                 watch.tick()
+                if alive() is None and found.empty():  # it could not even say why
+                    raise Stopped(MEMORY) from None
                 continue
             if isinstance(item, StopIteration):
                 ended = True
@@ -272,7 +288,7 @@ def _in_thread(
             program.keep()
         else:
             program.interrupt()
-        thread.join(timeout=0.5)
+        over.wait(timeout=0.5)
 
 
 def answers(
