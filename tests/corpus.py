@@ -244,6 +244,18 @@ def left(facts: str, experience: Experience, truth: Truth, found: list, *parts: 
     return Query(files, facts + phased.text(found), answers)
 
 
+def ends() -> Iterator[Query]:
+    """As many gateways as ends of links: that is to say, the closed maps."""
+    files = "fast/phases/topomap", "fast/phases/ends"
+    draws = [random_experience(random.Random(f"ends {seed}"), 8) for seed in range(20)]
+    for experience in [*(EXPERIENCES | WORLDS).values(), *draws]:
+        truth = Truth(experience)
+        facts = experience.facts()
+        facts += "".join(f"{atom}. " for atom in phased.Pairs(experience).shown())
+        asked = left(facts, experience, truth, [], "closed")
+        yield replace(asked, files=files, arguments=("--eq=0",))
+
+
 def sizes() -> list[Query]:
     """What the size of the fast encodings is taken by: each experience with all the parts, and
     one in five of what is asked of the phases."""
@@ -284,7 +296,7 @@ def faults() -> Iterator[Query]:
         yield Query(("input",), facts, shown(*(f"error({error})" for error in errors.split())))
 
 
-SUITES = (theory, phases, check, demands, faults)
+SUITES = (theory, phases, ends, check, demands, faults)
 
 
 @cache

@@ -50,8 +50,8 @@ when clingo has an error or a message for it, *endless* when a query takes more 
 seconds of the processor or {memory} MiB of memory. When all answers are right, a mutant of
 `fast/`, whose worth is in its size, is *larger* if it grounds to more rules, over all named
 experiences with all the parts and some of what `fast/phases/` is asked. Another one is
-*equivalent* if `tests/equivalent.toml` says why, and has *survived* if not. Comments and
-`#include` are not mutated.
+*equivalent* if `tests/equivalent.toml` says why, and has *survived* if not. Comments,
+`#include` and `#heuristic`, which is but an order of the search, are not mutated.
 """
 COMPLEMENT = {
     ast.ComparisonOperator.Equal: ast.ComparisonOperator.NotEqual,
@@ -130,6 +130,8 @@ def mutants(folder: Path, file: str) -> list[Mutant]:
     """The mutants of an encoding; of those that read the same, one."""
     found = {}
     for number, statement in enumerate(statements(folder, file)):
+        if statement.ast_type == ast.ASTType.Heuristic:
+            continue
         rule = str(statement)
         found[number, ""] = Mutant(file, rule, "remove", "remove", number, "")
         for kind, change, node in changes(statement):

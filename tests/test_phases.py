@@ -8,6 +8,7 @@ from itertools import combinations, combinations_with_replacement, pairwise
 import pytest
 from conftest import TRIED
 from topomap import phases, search, solver
+from topomap.check import by_definition
 from topomap.environment import grid, maze, world
 from topomap.experience import Experience, explore
 from topomap.generate import instance
@@ -34,6 +35,7 @@ MORE = [
 def always(monkeypatch):
     """Have short explorations done in phases too."""
     monkeypatch.setattr(phases, "LEAST", 0)
+    monkeypatch.setattr(phases, "LEAST_BOUNDED", 0)
     monkeypatch.setattr(phases, "STRIDE", 3)
 
 
@@ -138,10 +140,10 @@ def found(way, experience, parts, form="fast", horizon=None, places=None):
     return set(answers)
 
 
-def agree(experience, horizon=None, more=MORE, searched=True, places=None):
+def agree(experience, horizon=None, more=MORE, searched=True, places=None, common=SQUARE):
     """Demand the same answers of the phases, of the plain encoding and of the search."""
     for parts in more:
-        asked = experience, (*SQUARE, *parts)
+        asked = experience, (*common, *parts)
         plain = found(solver.hypotheses, *asked, "plain", horizon, places)
         TRIED["queries in phases"] += 1
         TRIED["queries in phases that had an answer"] += bool(plain)
@@ -192,6 +194,30 @@ def test_a_question_that_is_given_up_tells_nothing(monkeypatch, tries):
     _, known = claims(made.experience, ("beginnings",))
     judge = Map(made.experience, made.truth)
     assert all(judge.accepts(f.name, *(a.number for a in f.arguments)) for f in known)
+
+
+BOUNDED = [(), ("planar",), ("perpendicular",), ("minimal",), ("boundary", "planar")]
+
+
+def agree_on_bounds(number, most):
+    """Closed maps with the least number of places, the next one, and one place less."""
+    experience, horizon = toured(random.Random(f"bounds {number}"), most, random_world)
+    maps = found(solver.hypotheses, experience, ("closed",), "plain", horizon)
+    sizes = sorted({len({place for place, _ in at}) for at in maps})
+    for places in {size - less for size in sizes[:2] for less in (0, 1)} or {3}:
+        agree(experience, horizon, BOUNDED, False, places, ("closed",))
+
+
+@pytest.mark.parametrize("block", range(2))
+def test_bounds(block):
+    for number in range(5):
+        agree_on_bounds(f"{block}/{number}", 14)
+
+
+@pytest.mark.long
+def test_many_bounds():
+    for number in range(300):
+        agree_on_bounds(f"long {number}", 20)
 
 
 @pytest.mark.long
@@ -320,6 +346,36 @@ def test_each_phase_finds_something():
 def test_the_snake_of_6x6():
     made = instance(grid(6, 6), "snake")
     assert found(solver.hypotheses, made.experience, (*SQUARE, "planar")) == {made.truth}
+
+
+def test_the_snake_of_5x5_has_no_closed_map_of_fewer_places():
+    """That is settled by the counting alone, and of the real map all is possible."""
+    made = instance(grid(5, 5), "snake")
+    for places in 24, 25:
+        work = phases._Phases(made.experience.facts(), FORMS["fast"], lambda _: None)
+        work.visits()
+        possible = {pair for pair in work._pairs if pair.name == "fits"}
+        work.bounded(places)
+        judge = Map(made.experience, made.truth)
+        numbers = [[a.number for a in fact.arguments] for fact in work._found]
+        if places == 25:
+            assert 0 < len(numbers) < len(possible)
+            assert all(judge.accepts("out", *each) for each in numbers)
+        else:
+            assert len(numbers) == len(possible)
+
+
+@pytest.mark.long
+@pytest.mark.parametrize(("size", "places", "number"), [(5, 25, 1525), (6, 18, 212)])
+def test_closed_planar_maps_of_fewest_places(size, places, number):
+    """And each is sound by definition."""
+    experience = instance(grid(size, size), "snake").experience
+    fewer = found(solver.hypotheses, experience, ("closed", "planar"), places=places - 1)
+    maps = found(solver.hypotheses, experience, ("closed", "planar"), places=places)
+    assert (len(fewer), len(maps)) == (0, number)
+    for at in maps:
+        facts = [(step, *dstate) for step, dstate in enumerate(at)]
+        assert not by_definition(experience, facts, ["planar", "closed", f"bound({places})"])
 
 
 @pytest.mark.long

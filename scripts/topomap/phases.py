@@ -1,15 +1,18 @@
 """Large maps in phases: what is certain is found by small programs first, so that the whole
 one grounds over what is left.
 
-All that is found holds in every closed and perpendicular map (and planar one, if that is
-asked), so the answers stay the same. ``encodings/fast/phases/`` has the programs:
+All that is found holds in every map that is asked for, so the answers stay the same.
+``encodings/fast/phases/`` has the programs:
 
-1. ``visits.lp``: which visits can be of one place, by pairs; settled while grounding. The
-   others follow only where the counting argument of ``runs.lp`` applies.
-2. ``runs.lp``: which runs never cross and never lie on one path; a call for each pair.
-3. the theory without planarity: which visits are the first of their place; a call for each.
-4. the theory with planarity, on longer and longer beginnings of the exploration: at which
-   gateways a visit can be, in any map of the beginning (brave consequences).
+1. ``visits.lp``: which visits can be of one place, by pairs; settled while grounding.
+2. for closed maps with at most so many places: the theory without planarity, but with
+   ``ends.lp``: at which gateways a visit can be in any such map (brave consequences).
+3. for large closed and perpendicular maps, where the counting argument of ``runs.lp``
+   applies: which runs never cross and never lie on one path; a call for each pair;
+4. then the theory without planarity: which visits are the first of their place; a call for
+   each;
+5. then, if the map is to be planar, the theory with planarity, on longer and longer
+   beginnings of the exploration: brave consequences again.
 """
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -24,10 +27,12 @@ from topomap.experience import Experience
 if TYPE_CHECKING:
     from topomap.solver import Query
 
-NEEDED = {"closed", "perpendicular"}
+SQUARE = {"closed", "perpendicular"}
 LEAST = 90  # steps: shorter explorations are as soon done in one call
+LEAST_BOUNDED = 40  # steps, the same for maps with a bound
 TRY = 20  # conflicts for a question whose answer may be left open
 IN_VAIN = 50  # such questions in a row: there is no more to be found
+TRY_BOUNDED = 50_000  # conflicts for all maps with a bound
 TRY_HARD = 200_000  # conflicts for one beginning
 STRIDE = 6  # steps, at least, from one beginning to the next
 
@@ -36,9 +41,30 @@ Heed = Callable[[clingo.Control], None]
 
 
 def serve(experience: Experience, query: "Query") -> bool:
-    """Whether the phases are for such a query."""
-    steps = experience.steps if query.horizon is None else query.horizon
-    return experience.slots == 4 and min(steps, experience.steps) >= LEAST and query.parts >= NEEDED
+    """Whether there are phases for such a query."""
+    return _bounded(experience, query) or _square(experience, query)
+
+
+def _bounded(experience: Experience, query: "Query") -> bool:
+    long = _steps(experience, query) >= LEAST_BOUNDED
+    return long and "closed" in query.parts and query.places is not None
+
+
+def _square(experience: Experience, query: "Query") -> bool:
+    long = _steps(experience, query) >= LEAST
+    return long and query.parts >= SQUARE and experience.slots == 4
+
+
+def _steps(experience: Experience, query: "Query") -> int:
+    return experience.steps if query.horizon is None else min(query.horizon, experience.steps)
+
+
+def program(experience: Experience, query: "Query") -> tuple[list[str], list[str]]:
+    """The files and the options with which clingo solves what the phases leave of a query,
+    besides its parts."""
+    if _bounded(experience, query) and not (query.optimizes or "perpendicular" in query.parts):
+        return ["phases/topomap", "phases/earlier"], ["--heuristic=Domain"]
+    return ["phases/topomap"], []
 
 
 def found(experience: Experience, query: "Query", folder: Path, heed: Heed) -> str:
@@ -47,10 +73,14 @@ def found(experience: Experience, query: "Query", folder: Path, heed: Heed) -> s
     ``folder`` has the fast encodings; ``heed`` is called between two calls of clingo. The
     controls that it is given may be interrupted; what is found is then less, and as true.
     """
+    bounded, square = _bounded(experience, query), _square(experience, query)
     if query.horizon is not None:
         experience = experience.cut(query.horizon)
     work = _Phases(experience.facts(), folder, heed)
-    if work.visits():
+    few = work.visits()
+    if bounded:
+        work.bounded(query.places or 0)
+    if square and few:
         work.runs()
         work.new()
         if "planar" in query.parts:
@@ -80,7 +110,7 @@ class _Phases:
         return control
 
     def visits(self) -> bool:
-        """Whether it is worth while to go on."""
+        """Whether ``runs.lp`` has a use."""
         control = self._grounded("phases/visits")
         shown: Sequence[Symbol] = []
         with control.solve(yield_=True) as models:
@@ -135,24 +165,35 @@ class _Phases:
     def _know(self, name: str, *arguments: Symbol) -> None:
         self._found.append(Function(name, arguments))
 
+    def bounded(self, places: int) -> None:
+        files = "closed", "bound", "phases/ends"
+        self._possible(TRY_BOUNDED, files, "--eq=0", "-c", f"places={places}")
+
     def beginnings(self, experience: Experience) -> None:
         new = {found.arguments[0].number for found in self._found if found.name == "new"}
         start = next((step for step in range(experience.steps) if step not in new), 0)
         for end in _ends(experience, start):
-            options = ["0", "--enum-mode=brave", "-c", f"horizon={end}"]
-            files = ("phases/topomap", "perpendicular", "planar")
-            control = self._grounded(*files, arguments=options)
-            _limit(control, TRY_HARD)
-            asked = {atom.symbol for atom in control.symbolic_atoms.by_signature("at", 3)}
-            found: set[Symbol] = set()
-            with control.solve(yield_=True) as models:
-                for model in models:
-                    self._heed(control)
-                    found = set(model.symbols(shown=True))
-                if not models.get().exhausted:
-                    return  # later ones are larger
-            for atom in sorted(asked - found):
-                self._know("out", *atom.arguments)
+            files = "perpendicular", "planar"
+            if not self._possible(TRY_HARD, files, "-c", f"horizon={end}"):
+                return  # later ones are larger
+
+    def _possible(self, conflicts: int, files: Iterable[str], *options: str) -> bool:
+        """Rule out the dstates that are in no answer of the theory with these parts; whether
+        that was settled within so many conflicts."""
+        options = "0", "--enum-mode=brave", *options
+        control = self._grounded("phases/topomap", *files, arguments=options)
+        _limit(control, conflicts)
+        asked = {atom.symbol for atom in control.symbolic_atoms.by_signature("at", 3)}
+        possible: set[Symbol] = set()
+        with control.solve(yield_=True) as models:
+            for model in models:
+                self._heed(control)
+                possible = set(model.symbols(shown=True))
+            if not models.get().exhausted:
+                return False
+        for atom in sorted(asked - possible):
+            self._know("out", *atom.arguments)
+        return True
 
 
 def _limit(control: clingo.Control, conflicts: int) -> None:

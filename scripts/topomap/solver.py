@@ -75,12 +75,14 @@ class Query:
         """The query with more parts."""
         return replace(self, parts=self.parts | set(parts))
 
-    def control(self, facts: str, entry: str = "topomap") -> clingo.Control:
-        """clingo with the encodings, the entry file first, and the facts, not yet grounded."""
-        arguments = ["0"]
+    def control(
+        self, facts: str, entry: Sequence[str] = ("topomap",), options: Sequence[str] = ()
+    ) -> clingo.Control:
+        """clingo with the encodings, the entry files first, and the facts, not yet grounded."""
+        arguments = ["0", *options]
         if self.optimizes:
             arguments.append("--opt-mode=optN")
-        files = [entry, *sorted(self.parts)]
+        files = [*entry, *sorted(self.parts)]
         if self.places is not None:
             files.append("bound")
             arguments += ["-c", f"places={self.places}"]
@@ -155,8 +157,8 @@ class Program:
     def __init__(self, experience: Experience, query: Query):
         self.asked = experience, query
         self._phased = query.encoding == "fast" and phases.serve(experience, query)
-        entry = "phases/topomap" if self._phased else "topomap"
-        self.control = query.control(experience.facts(), entry)
+        how = phases.program(experience, query) if self._phased else ()
+        self.control = query.control(experience.facts(), *how)
         self._grounded = self._interrupted = False
         self._solved = self.control  # now or next
 
