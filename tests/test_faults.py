@@ -9,13 +9,17 @@ import shlex
 import shutil
 import signal
 import subprocess
+import threading
 import time
 from pathlib import Path
 
 import pytest
 from conftest import BIN, ROOT, run
+from corpus import CORRIDOR
+from topomap import solver
 
 OLD = "old\n"
+QUIET = solver.Watch(quiet=True)
 GRID = ROOT / "instances/grid-3x3-snake.lp"
 PAPER = ROOT / "instances/grid-3x4-paper.lp"
 LARGE = ROOT / "instances/manhattan-tour40-signs30.lp"
@@ -263,18 +267,12 @@ def test_time_limits(seeds, record_property):
 
 
 OUT_OF_MEMORY = "topomap: out of memory\n"
-CRASHES = (-signal.SIGABRT, -signal.SIGSEGV, 127)
 
 
 def confined(kilobytes, *arguments):
-    """A command whose memory is limited: its status, its output and its messages. Now and then
-    there is none for C++ or the C library to end in an orderly way; then it is tried again."""
+    """A command whose memory is limited: its status, its output and its messages."""
     call = ["bash", "-c", f'ulimit -v {kilobytes} && exec "$0" "$@"', BIN / "topomap", *arguments]
-    for _ in range(3):
-        done = subprocess.run(call, capture_output=True, text=True, timeout=100)
-        if done.returncode not in CRASHES:
-            break
-        assert done.stdout == ""
+    done = subprocess.run(call, capture_output=True, text=True, timeout=100)
     return done.returncode, done.stdout, done.stderr
 
 
@@ -333,3 +331,26 @@ def test_want_of_memory_elsewhere(tmp_path):
     ):
         assert confined((least + 5) * 1024, *call) == (3, "", OUT_OF_MEMORY)
     assert [path.name for path in tmp_path.iterdir()] == ["large.lp"]
+
+
+def test_a_thread_that_ends_unheard_is_not_waited_for(monkeypatch):
+    def end(*_, **__):
+        raise SystemExit  # as MemoryError does where not even that can be told
+
+    monkeypatch.setattr(solver.Program, "solve", end)
+    with pytest.raises(solver.Stopped, match="out of memory"):
+        list(solver.hypotheses(CORRIDOR, solver.Query(), QUIET))
+
+
+def test_queries_one_after_another_are_solved_in_one_thread(monkeypatch):
+    threads, solve = set(), solver.Program.solve
+
+    def note(*arguments, **named):
+        threads.add(threading.get_ident())
+        solve(*arguments, **named)
+
+    monkeypatch.setattr(solver.Program, "solve", note)
+    for horizon in range(4):
+        assert list(solver.hypotheses(CORRIDOR, solver.Query(horizon=horizon), QUIET))
+    assert len(threads) == 1
+    assert threads != {threading.get_ident()}

@@ -7,6 +7,7 @@ moment, while it grounds too, and what was found until then is kept.
 import _thread
 import contextlib
 import hashlib
+import os
 import queue
 import signal
 import sys
@@ -17,7 +18,7 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any, ClassVar, TypeVar
 
 import clingo
 from tqdm import tqdm
@@ -109,7 +110,7 @@ class Watch:
         self.signal = False
         self.deadline = None if timeout is None else time.monotonic() + timeout
         interval = 0.2 if sys.stderr.isatty() else 10
-        tqdm.monitor_interval = 0  # a thread, see _in_thread
+        tqdm.monitor_interval = 0  # a thread that may never begin
         self.bar = tqdm(
             unit=" maps", delay=2, mininterval=interval, miniters=0, leave=False, disable=quiet
         )
@@ -226,8 +227,56 @@ def _program(experience: Experience, query: Query) -> Program:
     return program
 
 
+class _Worker:
+    """A thread that does one job after another. It is started while there is memory, and has
+    what it needs when there is none left: a threading.Thread that cannot begin is waited for
+    without end, and C++ aborts where it cannot report an error."""
+
+    idle: ClassVar[list["_Worker"]] = []
+
+    def __init__(self) -> None:
+        self._jobs: queue.SimpleQueue[tuple[Callable[[], None], threading.Event]]
+        self._jobs = queue.SimpleQueue()
+        life = _Life()
+        self._alive = weakref.ref(life)
+        _thread.start_new_thread(self._run, (life,))
+
+    @classmethod
+    def hire(cls) -> "_Worker":
+        """An idle one, or a new one. Raises Stopped if there is no room for it."""
+        try:
+            return cls.idle.pop()
+        except IndexError:
+            pass
+        try:
+            return cls()
+        except RuntimeError:
+            raise Stopped(MEMORY) from None
+
+    def do(self, job: Callable[[], None]) -> threading.Event:
+        """Begin with a job; the event is set when it is done."""
+        over = threading.Event()
+        self._jobs.put((job, over))
+        return over
+
+    def is_alive(self) -> bool:
+        return self._alive() is not None
+
+    def _run(self, _: object) -> None:
+        _prepare()
+        while True:
+            job, over = self._jobs.get()
+            job()
+            del job  # and what it holds
+            self.idle.append(self)
+            over.set()
+
+
 class _Life:
-    """What only a thread holds: with it, it is gone."""
+    """What only a thread holds: when it is gone, so is the thread."""
+
+
+os.register_at_fork(after_in_child=_Worker.idle.clear)  # it has no threads but its own
 
 
 def _in_thread(
@@ -236,7 +285,7 @@ def _in_thread(
     """What ``work`` puts, in a thread of its own; what it puts last is False if it is to
     end. Raises Stopped at the time limit, or out of memory."""
     found: queue.Queue[Any] = queue.Queue(maxsize=1000)
-    stop, over = threading.Event(), threading.Event()
+    stop = threading.Event()
 
     def put(item: Any) -> bool:
         while not stop.is_set():
@@ -247,24 +296,15 @@ def _in_thread(
                 continue
         return not stop.is_set()
 
-    def run(_: object) -> None:
+    def run() -> None:
         try:
-            _prepare()
             work(put)
             put(StopIteration())
         except Exception as error:  # raised again in the caller's thread
             put(error)
-        finally:
-            over.set()
 
-    # A threading.Thread that has no memory to begin is waited for without end.
-    life = _Life()
-    alive = weakref.ref(life)
-    try:
-        _thread.start_new_thread(run, (life,))
-    except RuntimeError:  # there is no room for its stack
-        raise Stopped(MEMORY) from None
-    del life
+    worker = _Worker.hire()
+    over = worker.do(run)
     ended = False
     try:
         while True:
@@ -272,7 +312,7 @@ def _in_thread(
                 item = found.get(timeout=0.1)
             except queue.Empty:
                 watch.tick()
-                if alive() is None and found.empty():  # it could not even say why
+                if not worker.is_alive() and found.empty():  # it could not even say why
                     raise Stopped(MEMORY) from None
                 continue
             if isinstance(item, StopIteration):
