@@ -9,7 +9,8 @@ import time
 from pathlib import Path
 
 import pytest
-from bench import growth, measure, report, rows
+from bench import growth, jobs, measure, report, rows
+from topomap.solver import Query
 
 TESTS = Path(__file__).parent
 COMMAND = [sys.executable, "-m", "bench"]
@@ -220,6 +221,16 @@ def test_the_picture_has_the_same_bytes_each_time(tmp_path):
     assert "exponent 3.0" in (tmp_path / "a.svg").read_text()
 
 
+def test_what_more_processes_gain_is_told_and_that_they_count_the_same(monkeypatch):
+    monkeypatch.setattr(jobs, "TASKS", {"a task": ((3, 3), Query(frozenset(["planar"])))})
+    (found,) = jobs.speedup(2)
+    assert found["nodes"] == 240
+    assert found["same"]
+    assert found["ratio"] == found["alone"] / found["shared"]
+    assert "| a task | 240 |" in report.jobs([found])
+    assert "WRONG" in report.jobs([found | {"same": False}])
+
+
 def test_the_rows_are_those_of_the_table():
     _, everything = rows.read()
     names = [row.name for row in everything]
@@ -233,7 +244,7 @@ def test_the_rows_are_those_of_the_table():
         "4x4 snake, at most 16 places, planar": 545,
         "4x4 snake, any number of places, all maps": 920_024,
         "4x4 snake, any number of places, planar": 49_123,
-        "5x5 snake, closed, planar, at most 5 x 5 places": 1_525,
+        "5x5 snake, closed, planar, at most 25 places": 1_525,
     }
 
 

@@ -21,7 +21,7 @@ from typing import Any
 from topomap.errors import BAD_INPUT, DONE, INTERRUPTED, NO, InputError, say
 from topomap.files import output
 
-from bench import growth, measure, memory, report, rows
+from bench import growth, jobs, measure, memory, report, rows
 from bench.rows import ROOT, WAYS
 
 MAPS = 200_000
@@ -82,6 +82,12 @@ def parse(argv: list[str] | None) -> argparse.Namespace:
     add("--quick", action="store_true", help="the smallest rows, once; no report")
     add("--large", action="store_true", help="larger rows too")
     add("--maps", type=_number(int, 0), help=f"maps to a file, 0: none (default: {MAPS:,})")
+    add(
+        "--jobs",
+        type=_number(int, 0),
+        default=os.cpu_count(),
+        help="processes beside one, where all is measured; 0: do not (default: %(default)s)",
+    )
     add("--networks", type=Path, default=ROOT.parent / "shared/maps", help="the real maps' folder")
     add("--rows", type=Path, default=rows.ROWS, help="the tasks")
     add(
@@ -153,6 +159,7 @@ def run(args: argparse.Namespace) -> int:
             "rows": [],
             "growth": [],
             "memory": None,
+            "jobs": [],
         }
         begun = time.monotonic()
         try:
@@ -164,6 +171,9 @@ def run(args: argparse.Namespace) -> int:
             if maps:
                 document["memory"] = memory.profile(maps)
                 print(report.memory(document["memory"]), end="", flush=True)
+            if args.jobs and whole:
+                document["jobs"] = jobs.speedup(args.jobs)
+                print(report.jobs(document["jobs"]), end="", flush=True)
             document["complete"] = True
         except KeyboardInterrupt:
             document["fault"] = "interrupted"
@@ -179,7 +189,8 @@ def run(args: argparse.Namespace) -> int:
     wrong = [row for row in document["rows"] if row["verdict"].startswith("WRONG")]
     print(f"{len(chosen)} rows in {document['seconds']} s, {len(wrong) or 'none'} wrong")
     grows = document["memory"] is not None and not document["memory"]["flat"]
-    return NO if wrong or grows else DONE
+    differ = not all(row["same"] for row in document["jobs"])
+    return NO if wrong or grows or differ else DONE
 
 
 def _write(document: dict[str, Any], path: str) -> None:

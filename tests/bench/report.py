@@ -16,7 +16,7 @@ lists the tasks.
 """
 HOW = """
 Each measurement is a process of its own, on one core: Python, the package, and clingo with its
-default options. `baseline` is `encodings/` at the git revision `{revision}`, `plain` and `fast`
+default options, but for what `phases.py` asks of it. `baseline` is `encodings/` at the git revision `{revision}`, `plain` and `fast`
 are `encodings/` and `encodings/fast/` as they are now, `search` is the package's depth-first
 search, in Python; where it would not end without, it is told how many places the real map has.
 {plain}Figures of several programs are added up. Seconds are those from the facts to the last
@@ -234,6 +234,8 @@ def text(document: dict[str, Any], picture: str) -> str:
         _growth(document["growth"], picture),
         "## Very many maps to a file\n" if document["memory"] else "",
         memory(document["memory"]) if document["memory"] else "",
+        "## More processes\n" if document["jobs"] else "",
+        jobs(document["jobs"]) if document["jobs"] else "",
         "## Every figure\n",
         _all(rows),
         "## Where the expected numbers come from\n",
@@ -250,3 +252,18 @@ def memory(found: dict[str, Any]) -> str:
         f"in {number(found['seconds'])} s; the most memory, in MB, until each tenth of the file "
         f"was written: {', '.join(tenths)}. {flat}\n"
     )
+
+
+def jobs(rows: list[dict[str, Any]]) -> str:
+    lines = [
+        [
+            row["task"],
+            number(row["nodes"]),
+            number(row["alone"]),
+            number(row["shared"]),
+            f"{row['ratio']:.2f}" if row["same"] else "**WRONG: the figures differ**",
+        ]
+        for row in rows
+    ]
+    head = ["task", "nodes of the tree", "s, one process", f"s, {rows[0]['jobs']} processes"]
+    return _table([*head, "ratio"], lines)
