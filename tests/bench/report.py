@@ -16,9 +16,10 @@ lists the tasks.
 """
 HOW = """
 Each measurement is a process of its own, on one core: Python, the package, and clingo with its
-default options, but for what `phases.py` asks of it. `baseline` is `encodings/` at the git revision `{revision}`, `plain` and `fast`
-are `encodings/` and `encodings/fast/` as they are now, `search` is the package's depth-first
-search, in Python; where it would not end without, it is told how many places the real map has.
+default options, but for what `phases.py` asks of it. `baseline` is `encodings/` at the git
+revision `{revision}`, `plain` and `fast` are `encodings/` and `encodings/fast/` as they are now,
+`search` is the package's depth-first search, in Python; where it would not end without, it is
+told how many places the real map has.
 {plain}Figures of several programs are added up. Seconds are those from the facts to the last
 answer, without the start of Python; memory is the most that the process had{start}. In each
 repetition the ways take turns, so that ratios are of one run; figures are medians. A way is
