@@ -194,7 +194,7 @@ class Cluster:
             watch.tick()
             try:
                 return future.result(timeout=0.1)
-            except TimeoutError:
+            except (TimeoutError, UnboundLocalError):  # the latter: a result lost on its way
                 continue
             except (self._dask.KilledWorker, self._dask.CancelledError):
                 raise Stopped(LOST) from None

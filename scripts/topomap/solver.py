@@ -194,10 +194,13 @@ class Program:
         if not self.asked[1].optimizes:
             _last.program = self
 
-    def models(self) -> int:
-        """How many answers the last call had (best ones, if the query minimises)."""
-        which = "optimal" if self.asked[1].optimizes else "enumerated"
-        return int(self.control.statistics["summary"]["models"][which])
+    def models(self) -> tuple[int, tuple[float, ...]]:
+        """How many answers the last call had; if the query minimises, best ones, and what
+        they cost."""
+        summary = self.control.statistics["summary"]
+        if not self.asked[1].optimizes:
+            return int(summary["models"]["enumerated"]), ()
+        return int(summary["models"]["optimal"]), tuple(summary["costs"])
 
 
 class _Last(threading.local):
@@ -467,13 +470,13 @@ def count(
     program = _program(experience, query)
     last = experience.steps if query.horizon is None else min(query.horizon, experience.steps)
     fresh = clingo.Function("fresh", [clingo.Number(last)])
-    counts: list[int] = []
+    counts: list[tuple[int, tuple[float, ...]]] = []
 
     def work(put: Callable[[Any], bool]) -> None:
         for more in [[(fresh, True)], [(fresh, False)]] if grown and last else [[]]:
             program.solve(cube, more)
             counts.append(program.models())
-            if not put(counts[-1]):
+            if not put(counts[-1][0]):
                 break
 
     if watch is None:
@@ -485,4 +488,6 @@ def count(
     else:
         for number in _in_thread(program, watch, work):
             watch.found += number
-    return sum(counts), counts[0] if grown else 0
+    least = min((cost for number, cost in counts if number), default=())
+    numbers = [number if cost == least else 0 for number, cost in counts]
+    return sum(numbers), numbers[0] if grown else 0
