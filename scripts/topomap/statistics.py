@@ -52,33 +52,47 @@ def tree(
             watch.found = found = found + pair[0]
             yield pair
 
+    maps = 0
+
+    def level(pairs: Iterator[tuple[int, int]]) -> int:
+        """Take in the pairs of a step; how many hypotheses there are."""
+        nonlocal maps
+        numbers = list(pairs)
+        maps += sum(grown for _, grown in numbers)
+        result["per_step"].append(sum(total for total, _ in numbers))
+        return int(result["per_step"][-1])
+
     result.update(dict.fromkeys(KEYS), per_step=[])
     monotone = query.parts <= set(PRUNING)
     last = experience.steps if query.horizon is None else min(query.horizon, experience.steps)
     parts: list[Cube] = [()]
     cubes: list[Cube] = []  # to come in its place, at a step
-    depth = 0
-    maps = 0
-    for step in range(last + 1):
+    depth = step = 0
+    while step <= last:
         watch.title(f"step {step} of {last}")
         if not cubes and (not monotone or max(result["per_step"], default=0) > LARGE):
             cubes, depth = search.cubes(experience, query)
         if cubes and step >= depth:
             demand_cover(experience, query, watch, cubes, depth)
-            parts, depth = cubes, last + 1
-        at_step = replace(query, horizon=step)
-        pairs = list(counted([(at_step, cube, True) for cube in parts]))
-        result["per_step"].append(sum(total for total, _ in pairs))
-        maps += sum(grown for _, grown in pairs)
-        if monotone:
-            parts = [cube for cube, (total, _) in zip(parts, pairs, strict=True) if total]
-    result.update(nodes=sum(result["per_step"]), maps=maps, final=result["per_step"][-1])
+            parts = cubes
+            break
+        if not level(counted([(replace(query, horizon=step), cube, True) for cube in parts])):
+            parts = [] if monotone else parts
+        step += 1
+    # All that is left is shared out at once: nobody waits for the end of a step.
+    steps = range(step, last + 1)
+    units = [(replace(query, horizon=step), cube, True) for step in steps for cube in parts]
     asked = {key: query.having(*properties) for key, properties in FINAL.items()}
     cubes_of = {key: [()] if asked[key].optimizes else parts for key in asked}
-    pairs_of = counted([(asked[key], cube, False) for key in asked for cube in cubes_of[key]])
+    units += [(asked[key], cube, False) for key in asked for cube in cubes_of[key]]
+    pairs = counted(units)
+    for step in steps:
+        watch.title(f"step {step} of {last}")
+        level(islice(pairs, len(parts)))
+    result.update(nodes=sum(result["per_step"]), maps=maps, final=result["per_step"][-1])
     for key in asked:
         watch.title(f"{key} maps")
-        result[key] = sum(total for total, _ in islice(pairs_of, len(cubes_of[key])))
+        result[key] = sum(total for total, _ in islice(pairs, len(cubes_of[key])))
 
 
 def final_maps(experience: Experience, query: Query, watch: Watch, crew: Crew) -> int:
