@@ -1,6 +1,6 @@
 # make            set up, make the instances, print the paper's table beside ours
-# make test       run the tests; make test-long also those that take minutes
-# make mutate     change each rule in turn, and write docs/mutation.md (JOBS: processes)
+# make test       run the tests; make test-long also those that take minutes (JOBS: processes)
+# make mutate     change each rule in turn, and write docs/mutation.md (JOBS)
 # make lint       check style and types
 # make instances  make the batch that instances/batch.txt lists (try make -j2 instances)
 # make bench      time the encodings and the search, write docs/benchmark.md (half an hour;
@@ -44,10 +44,10 @@ $(BATCH)/%.lp: $(BATCH)/%.args $(MAKERS) $$(filter %.graphml,$$(shell cat $(BATC
 	$(BIN)/topomap generate $(shell cat $<) --output $@
 
 test: $(SETUP)
-	$(BIN)/pytest -m 'not long'
+	$(BIN)/pytest -n $(JOBS) -m 'not long'
 
 test-long: $(SETUP)
-	$(BIN)/pytest
+	$(BIN)/pytest -n $(JOBS)
 
 mutate: $(SETUP)
 	$(BIN)/python tests/mutate.py --jobs $(JOBS)

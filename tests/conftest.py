@@ -24,6 +24,18 @@ signal.signal(signal.SIGINT, signal.default_int_handler)
 TRIED = Counter()  # what was tried how often, for the last lines of a test run
 
 
+def pytest_sessionfinish(session):
+    """One of several processes that run tests hands over what its tests have counted."""
+    if hasattr(session.config, "workeroutput"):
+        session.config.workeroutput["tried"] = dict(TRIED)
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_testnodedown(node):
+    """And the first one takes it."""
+    TRIED.update(getattr(node, "workeroutput", {}).get("tried", {}))
+
+
 def pytest_terminal_summary(terminalreporter):
     """What tests have counted, here and by record_property."""
     for report in terminalreporter.stats.get("passed", []):
