@@ -79,6 +79,13 @@ AGGREGATES = {
         "N = #count { T: pass(A,T,_), cross(T) }",
         "L = #count { C: through(C) }",
     ],
+    "fast/phases/lines": [
+        "{ same(P,T,S) }",
+        "{ joined(A,B) }",
+        "{ meets(A,B) }",
+        "{ against(A) }",
+        "{ across(T,X,A) }",
+    ],
     "fast/phases/runs": ["{ touch(A,B) }", "{ crossing(A,B) }"],
 }
 
@@ -87,7 +94,7 @@ AGGREGATES = {
 def test_no_body_weighs_or_counts_derived_atoms(file):
     """clasp miscounts on such bodies (docs/clasp.md): bound.lp counts new/1 alone, each
     atom of which is one chosen atom; input.lp takes the largest of facts; the choices in
-    places.lp are of distinct atoms; those in runs.lp have no bound; fast/planar.lp and
+    places.lp are of distinct atoms; those in runs.lp and lines.lp have no bound; fast/planar.lp and
     fast/phases/counts.lp count facts. Of check.lp nothing reaches clasp (test_check.py)."""
     aggregates = []
 

@@ -4,12 +4,15 @@ one grounds over what is left.
 All that is found holds in every closed and perpendicular map (and planar one, if that is
 asked), so the answers stay the same. ``encodings/fast/phases/`` has the programs:
 
-1. ``visits.lp``: which visits can be of one place, by pairs; settled while grounding. The
-   others follow only where the counting argument of ``runs.lp`` applies.
+1. ``visits.lp``: which visits can be of one place, by pairs; settled while grounding. Then,
+   where the counting argument of ``runs.lp`` applies:
 2. ``runs.lp``: which runs never cross and never lie on one path; a call for each pair.
 3. the theory without planarity: which visits are the first of their place; a call for each.
 4. the theory with planarity, on longer and longer beginnings of the exploration: at which
    gateways a visit can be, in any map of the beginning (brave consequences).
+
+And where it does not apply, ``lines.lp``: which visits are of one place in any map, planar or
+not (brave consequences). It has few rules, and clasp is quick on it.
 """
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -25,10 +28,11 @@ if TYPE_CHECKING:
     from topomap.solver import Query
 
 NEEDED = {"closed", "perpendicular"}
-LEAST = 90  # steps: shorter explorations are as soon done in one call
+LEAST = 80  # steps: shorter explorations are as soon done in one call
 TRY = 20  # conflicts for a question whose answer may be left open
 IN_VAIN = 50  # such questions in a row: there is no more to be found
 TRY_HARD = 200_000  # conflicts for one beginning
+BRAVE = ("0", "--enum-mode=brave")
 STRIDE = 6  # steps, at least, from one beginning to the next
 
 # Called often, with the control that is solved next; raises what ends the work.
@@ -55,6 +59,8 @@ def found(experience: Experience, query: "Query", folder: Path, heed: Heed) -> s
         work.new()
         if "planar" in query.parts:
             work.beginnings(experience)
+    else:
+        work.lines()
     return work.facts()
 
 
@@ -139,20 +145,29 @@ class _Phases:
         new = {found.arguments[0].number for found in self._found if found.name == "new"}
         start = next((step for step in range(experience.steps) if step not in new), 0)
         for end in _ends(experience, start):
-            options = ["0", "--enum-mode=brave", "-c", f"horizon={end}"]
             files = ("phases/topomap", "perpendicular", "planar")
-            control = self._grounded(*files, arguments=options)
-            _limit(control, TRY_HARD)
-            asked = {atom.symbol for atom in control.symbolic_atoms.by_signature("at", 3)}
-            found: set[Symbol] = set()
-            with control.solve(yield_=True) as models:
-                for model in models:
-                    self._heed(control)
-                    found = set(model.symbols(shown=True))
-                if not models.get().exhausted:
-                    return  # later ones are larger
-            for atom in sorted(asked - found):
+            control = self._grounded(*files, arguments=[*BRAVE, "-c", f"horizon={end}"])
+            never = self._never(control, ("at", 3))
+            if never is None:
+                return  # later ones are larger
+            for atom in never:
                 self._know("out", *atom.arguments)
+
+    def lines(self) -> None:
+        control = self._grounded("phases/lines", arguments=BRAVE)
+        for atom in self._never(control, ("same", 3), ("new", 1)) or ():
+            self._know({"same": "apart", "new": "old"}[atom.name], *atom.arguments)
+
+    def _never(self, control: clingo.Control, *asked: tuple[str, int]) -> list[Symbol] | None:
+        """The atoms of these predicates that are in no answer; none if that was not settled."""
+        atoms = control.symbolic_atoms
+        left = {atom.symbol for name in asked for atom in atoms.by_signature(*name)}
+        _limit(control, TRY_HARD)
+        with control.solve(yield_=True) as models:
+            for model in models:
+                self._heed(control)
+                left.difference_update(model.symbols(shown=True))
+            return sorted(left) if models.get().exhausted else None
 
 
 def _limit(control: clingo.Control, conflicts: int) -> None:
