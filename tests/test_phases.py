@@ -292,7 +292,14 @@ class Map:
         return (self.at[step][0] == step) == {"new": True, "old": False}[name]
 
 
-CHAINS = [("lines",), ("runs",), ("new",), ("beginnings",), ("runs", "new"), ("runs", "new", "beginnings")]
+CHAINS = [
+    ("lines",),
+    ("runs",),
+    ("new",),
+    ("beginnings",),
+    ("runs", "new"),
+    ("runs", "new", "beginnings"),
+]
 
 
 def are_true(experience, chain):

@@ -1,8 +1,8 @@
 """Large maps in phases: what is certain is found by small programs first, so that the whole
 one grounds over what is left.
 
-All that is found holds in every closed and perpendicular map (and planar one, if that is
-asked), so the answers stay the same. ``encodings/fast/phases/`` has the programs:
+All that is found, but for rare/3, holds in every closed and perpendicular map (and planar one,
+if that is asked), so the answers stay the same. ``encodings/fast/phases/`` has the programs:
 
 1. ``visits.lp``: which visits can be of one place, by pairs; settled while grounding. Then,
    where the counting argument of ``runs.lp`` applies:
@@ -12,7 +12,8 @@ asked), so the answers stay the same. ``encodings/fast/phases/`` has the program
    gateways a visit can be, in any map of the beginning (brave consequences).
 
 And where it does not apply, ``lines.lp``: which visits are of one place in any map, planar or
-not (brave consequences). It has few rules, and clasp is quick on it.
+not (brave consequences). It has few rules, and clasp is quick on it. If this is not settled
+in time, what was seen in no map yet is rare: the maps without it are looked for first.
 """
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -31,7 +32,7 @@ NEEDED = {"closed", "perpendicular"}
 LEAST = 80  # steps: shorter explorations are as soon done in one call
 TRY = 20  # conflicts for a question whose answer may be left open
 IN_VAIN = 50  # such questions in a row: there is no more to be found
-TRY_HARD = 200_000  # conflicts for one beginning
+TRY_HARD = 200_000  # conflicts for one beginning, or for all lines
 BRAVE = ("0", "--enum-mode=brave")
 STRIDE = 6  # steps, at least, from one beginning to the next
 
@@ -147,27 +148,34 @@ class _Phases:
         for end in _ends(experience, start):
             files = ("phases/topomap", "perpendicular", "planar")
             control = self._grounded(*files, arguments=[*BRAVE, "-c", f"horizon={end}"])
-            never = self._never(control, ("at", 3))
-            if never is None:
+            unseen, settled = self._unseen(control, ("at", 3))
+            if not settled:
                 return  # later ones are larger
-            for atom in never:
+            for atom in unseen:
                 self._know("out", *atom.arguments)
 
     def lines(self) -> None:
         control = self._grounded("phases/lines", arguments=BRAVE)
-        for atom in self._never(control, ("same", 3), ("new", 1)) or ():
-            self._know({"same": "apart", "new": "old"}[atom.name], *atom.arguments)
+        unseen, settled = self._unseen(control, ("same", 3), ("new", 1))
+        for atom in unseen:
+            if settled:
+                self._know({"same": "apart", "new": "old"}[atom.name], *atom.arguments)
+            elif atom.name == "same":
+                self._know("rare", *atom.arguments)
 
-    def _never(self, control: clingo.Control, *asked: tuple[str, int]) -> list[Symbol] | None:
-        """The atoms of these predicates that are in no answer; none if that was not settled."""
+    def _unseen(
+        self, control: clingo.Control, *asked: tuple[str, int]
+    ) -> tuple[list[Symbol], bool]:
+        """The atoms of these predicates that are in no answer, so far as answers were found in
+        time; and whether all were."""
         atoms = control.symbolic_atoms
-        left = {atom.symbol for name in asked for atom in atoms.by_signature(*name)}
+        unseen = {atom.symbol for name in asked for atom in atoms.by_signature(*name)}
         _limit(control, TRY_HARD)
         with control.solve(yield_=True) as models:
             for model in models:
                 self._heed(control)
-                left.difference_update(model.symbols(shown=True))
-            return sorted(left) if models.get().exhausted else None
+                unseen.difference_update(model.symbols(shown=True))
+            return sorted(unseen), bool(models.get().exhausted)
 
 
 def _limit(control: clingo.Control, conflicts: int) -> None:
