@@ -203,7 +203,8 @@ def hypotheses(facts: str, arguments: tuple[str, ...], truth: Truth) -> Iterator
 
 def phases() -> Iterator[Query]:
     """The programs of the phases: which visits can be of one place; which runs can lie on one
-    path or cross; and the hypotheses that are left by what was found."""
+    path or cross; the closed and perpendicular maps; and the hypotheses that are left by what
+    was found."""
     draw = random.Random("phases")
     experiences = [*(EXPERIENCES | WORLDS).values()]
     experiences += WALKS
@@ -226,11 +227,17 @@ def phases() -> Iterator[Query]:
             yield left(facts, experience, truth, few, "planar")
             yield left(facts, experience, truth, many, "closed", "perpendicular")
             yield left(facts, experience, truth, news, "planar")
-        for found in founds:
-            if experience.slots == 4 and (ways := phased.runs(experience, found)) is not None:
+        squares = truth.having("closed", "perpendicular")
+        for found in founds * (experience.slots == 4):
+            of_pairs = [fact for fact in found if fact[0] in ("new", "never", "apart")]
+            maps = [at for at in squares if phased.so(of_pairs, experience, at)]
+            answers = phased.lines(experience, maps)
+            file = ("fast/phases/lines",)
+            yield Query(file, facts + phased.text(found), answers, ("--project",))
+            if (ways := phased.runs(experience, found)) is not None:
                 answers = frozenset(((), way) for way in ways)
-                files = ("fast/phases/runs",)
-                yield Query(files, facts + phased.text(found), answers, ("--project",))
+                file = ("fast/phases/runs",)
+                yield Query(file, facts + phased.text(found), answers, ("--project",))
 
 
 def left(facts: str, experience: Experience, truth: Truth, found: list, *parts: str) -> Query:

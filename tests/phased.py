@@ -15,7 +15,7 @@ class Pairs:
         self.experience, self.slots = experience, experience.slots
         slots, turns, last = self.slots, (None, *experience.turns), experience.steps
         self.runs = _runs(experience)
-        self.facts = [fact for fact in found if fact[0] in ("new", "never")]
+        self.facts = [fact for fact in found if fact[0] in ("new", "never", "apart")]
         self.may = {
             (p, t, s)
             for t in range(last + 1)
@@ -97,9 +97,11 @@ def same(at, slots: int) -> list[Pair]:
 
 def holds(fact, experience, pairs: list[Pair]) -> bool:
     """Whether something found is so, where these visits are of one place: (new, T), (old, T),
-    (never, A, B, X), with X as in Pairs.shared and, if 1, at a place of four gateways; or
-    (out, T, P, S), where P is the first visit of its place."""
+    (never, A, B, X), with X as in Pairs.shared and, if 1, at a place of four gateways;
+    (out, T, P, S), where P is the first visit of its place; or (apart, P, T, S)."""
     name, *numbers = fact
+    if name == "apart":
+        return tuple(numbers) not in pairs
     if name in ("new", "old"):
         return (name == "old") == any(t == numbers[0] for _, t, _ in pairs)
     if name == "out":
@@ -124,6 +126,7 @@ def candidates(experience) -> list[tuple]:
     pairs = Pairs(experience)
     facts = [(name, t) for t in range(experience.steps + 1) for name in ("new", "old")]
     facts += [("out", t, p, s) for p, t, s in sorted(pairs.may) if p < t]
+    facts += [("apart", *pair) for pair in sorted(pairs.may) if pair[0] < pair[1]]
     if experience.slots == 4:
         runs = combinations(pairs.runs, 2)
         facts += [("never", a, b, x) for (a, b), x in product(runs, (0, 1))]
@@ -230,6 +233,23 @@ class _Runs:
             atoms |= {f"joined({a},{b})"} if path[a] == path[b] else set()
             atoms |= {f"grid({a},{b})"} if (path[a], path[b]) in grid else set()
         return frozenset(atoms)
+
+
+def lines(experience, maps) -> frozenset:
+    """What lines.lp is to show of these hypotheses, the closed and perpendicular ones."""
+    steps = range(experience.steps + 1)
+    here = {f"same({t},{t},0)" for t in steps}
+    return frozenset(
+        (
+            (),
+            frozenset(
+                here
+                | {"same({},{},{})".format(*pair) for pair in same(at, experience.slots)}
+                | {f"new({t})" for t in steps if at[t][0] == t}
+            ),
+        )
+        for at in maps
+    )
 
 
 def drawn(draw: random.Random, experience, at, rate: float) -> list[tuple]:

@@ -85,6 +85,13 @@ AGGREGATES = {
         "0 != #sum { N,T,new: new(T), has(T,I,N); -1,T,out: fresh(T), move(T,S), kind((T-1),S,I); "
         "-1,T,in: fresh(T), kind(T,0,I) }",
     ],
+    "fast/phases/lines": [
+        "{ same(P,T,S) }",
+        "{ joined(A,B) }",
+        "{ meets(A,B) }",
+        "{ against(A) }",
+        "{ across(T,X,A) }",
+    ],
     "fast/phases/runs": ["{ touch(A,B) }", "{ crossing(A,B) }"],
 }
 
@@ -93,8 +100,8 @@ AGGREGATES = {
 def test_no_body_weighs_or_counts_derived_atoms(file):
     """clasp miscounts on such bodies (docs/clasp.md): bound.lp counts new/1 alone, each
     atom of which is one chosen atom; input.lp takes the largest of facts; the choices in
-    places.lp are of distinct atoms; those in runs.lp have no bound; fast/planar.lp and
-    fast/phases/counts.lp count facts; ends.lp is solved with --eq=0. Of
+    places.lp are of distinct atoms; those in runs.lp and lines.lp have no bound;
+    fast/planar.lp and fast/phases/counts.lp count facts; ends.lp is solved with --eq=0. Of
     check.lp nothing reaches clasp (test_check.py)."""
     aggregates = []
 

@@ -187,13 +187,15 @@ def test_what_is_asked_up_to_a_step_is_not_told_by_later_ones():
     assert len(agree(experience, None, MORE[:1], searched=False)) < 8
 
 
+@pytest.mark.parametrize("phase", ["beginnings", "lines"])
 @pytest.mark.parametrize("tries", [1, 5, 20])
-def test_a_question_that_is_given_up_tells_nothing(monkeypatch, tries):
+def test_a_question_that_is_given_up_tells_nothing(monkeypatch, tries, phase):
     monkeypatch.setattr(phases, "TRY_HARD", tries)
     made = instance(grid(5, 5), "snake")
-    _, known = claims(made.experience, ("beginnings",))
+    _, known = claims(made.experience, (phase,))
     judge = Map(made.experience, made.truth)
-    assert all(judge.accepts(f.name, *(a.number for a in f.arguments)) for f in known)
+    certain = [f for f in known if f.name != "rare"]
+    assert all(judge.accepts(f.name, *(a.number for a in f.arguments)) for f in certain)
 
 
 BOUNDED = [(), ("planar",), ("perpendicular",), ("minimal",), ("boundary", "planar")]
@@ -218,6 +220,32 @@ def test_bounds(block):
 def test_many_bounds():
     for number in range(300):
         agree_on_bounds(f"long {number}", 20)
+
+
+def by_lines(monkeypatch):
+    """Have the counting argument never apply, so that lines.lp is asked."""
+    visits = phases._Phases.visits
+    monkeypatch.setattr(phases._Phases, "visits", lambda work: visits(work) and False)
+
+
+@pytest.mark.parametrize("tries", [2, phases.TRY_HARD])
+def test_lines(monkeypatch, tries):
+    """Settled or given up."""
+    by_lines(monkeypatch)
+    monkeypatch.setattr(phases, "TRY_HARD", tries)
+    for number in range(8):
+        experience, horizon = toured(random.Random(f"lines {number}"), 20)
+        agree(experience, horizon, MORE[:2], searched=False)
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("block", range(10))
+def test_many_lines(monkeypatch, block):
+    by_lines(monkeypatch)
+    for number in range(40):
+        draw = random.Random(f"many lines {block}/{number}")
+        experience, horizon = toured(draw, 28, draw.choice([square_world, crossing_streets]))
+        agree(experience, horizon, MORE[:2], searched=False)
 
 
 @pytest.mark.long
@@ -287,12 +315,21 @@ class Map:
         if name == "never":
             one, other, crossing = self.path[step], self.path[numbers[1]], numbers[2]
             return frozenset((one, other)) not in self.crossing if crossing else one != other
+        if name == "apart":
+            return not self.same(*numbers)
         if name == "out":
             return self.at[step] != tuple(numbers[1:])
         return (self.at[step][0] == step) == {"new": True, "old": False}[name]
 
 
-CHAINS = [("runs",), ("new",), ("beginnings",), ("runs", "new"), ("runs", "new", "beginnings")]
+CHAINS = [
+    ("lines",),
+    ("runs",),
+    ("new",),
+    ("beginnings",),
+    ("runs", "new"),
+    ("runs", "new", "beginnings"),
+]
 
 
 def are_true(experience, chain):
@@ -335,10 +372,10 @@ def test_what_a_phase_finds_is_often_true(chain):
 def test_each_phase_finds_something():
     """And all that is found of a snake is true of its real map."""
     made = instance(grid(5, 5), "snake")
-    pairs, known = claims(made.experience, ("runs", "new", "beginnings"))
+    pairs, known = claims(made.experience, ("runs", "new", "beginnings", "lines"))
     judge = Map(made.experience, made.truth)
     assert all(judge.accepts(f.name, *(a.number for a in f.arguments)) for f in known)
-    assert {fact.name for fact in known} == {"never", "new", "old", "out"}
+    assert {fact.name for fact in known} == {"never", "new", "old", "out", "apart"}
     assert {fact.arguments[2].number for fact in known if fact.name == "never"} == {0, 1}
     assert {pair.name for pair in pairs} == {"fits", "iff"}
 

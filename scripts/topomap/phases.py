@@ -1,18 +1,23 @@
 """Large maps in phases: what is certain is found by small programs first, so that the whole
 one grounds over what is left.
 
-All that is found holds in every map that is asked for, so the answers stay the same.
-``encodings/fast/phases/`` has the programs:
+All that is found, but for ``rare``, holds in every map that is asked for, so the answers stay
+the same. ``encodings/fast/phases/`` has the programs:
 
 1. ``visits.lp``: which visits can be of one place, by pairs; settled while grounding.
 2. for closed maps with at most so many places: the theory without planarity, but with
    ``ends.lp``: at which gateways a visit can be in any such map (brave consequences).
-3. for large closed and perpendicular maps, where the counting argument of ``runs.lp``
-   applies: which runs never cross and never lie on one path; a call for each pair;
-4. then the theory without planarity: which visits are the first of their place; a call for
-   each;
-5. then, if the map is to be planar, the theory with planarity, on longer and longer
-   beginnings of the exploration: brave consequences again.
+
+For large closed and perpendicular maps, where the counting argument of ``runs.lp`` applies:
+
+3. ``runs.lp``: which runs never cross and never lie on one path; a call for each pair.
+4. the theory without planarity: which visits are the first of their place; a call for each.
+5. if the map is to be planar, the theory with planarity, on longer and longer beginnings of
+   the exploration: brave consequences again.
+
+And where it does not apply, ``lines.lp``: which visits are of one place in any map, planar or
+not (brave consequences). It has few rules, and clasp is quick on it. If this is not settled
+in time, what was seen in no map yet is rare: the maps without it are looked for first.
 """
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -28,12 +33,13 @@ if TYPE_CHECKING:
     from topomap.solver import Query
 
 SQUARE = {"closed", "perpendicular"}
-LEAST = 90  # steps: shorter explorations are as soon done in one call
+LEAST = 80  # steps: shorter explorations are as soon done in one call
 LEAST_BOUNDED = 40  # steps, the same for maps with a bound
 TRY = 20  # conflicts for a question whose answer may be left open
 IN_VAIN = 50  # such questions in a row: there is no more to be found
 TRY_BOUNDED = 50_000  # conflicts for all maps with a bound
-TRY_HARD = 200_000  # conflicts for one beginning
+TRY_HARD = 200_000  # conflicts for one beginning, or for all lines
+BRAVE = ("0", "--enum-mode=brave")
 STRIDE = 6  # steps, at least, from one beginning to the next
 
 # Called often, with the control that is solved next; raises what ends the work.
@@ -85,6 +91,8 @@ def found(experience: Experience, query: "Query", folder: Path, heed: Heed) -> s
         work.new()
         if "planar" in query.parts:
             work.beginnings(experience)
+    elif square:
+        work.lines()
     return work.facts()
 
 
@@ -173,27 +181,41 @@ class _Phases:
         new = {found.arguments[0].number for found in self._found if found.name == "new"}
         start = next((step for step in range(experience.steps) if step not in new), 0)
         for end in _ends(experience, start):
-            files = "perpendicular", "planar"
-            if not self._possible(TRY_HARD, files, "-c", f"horizon={end}"):
+            if not self._possible(TRY_HARD, ("perpendicular", "planar"), "-c", f"horizon={end}"):
                 return  # later ones are larger
 
     def _possible(self, conflicts: int, files: Iterable[str], *options: str) -> bool:
         """Rule out the dstates that are in no answer of the theory with these parts; whether
         that was settled within so many conflicts."""
-        options = "0", "--enum-mode=brave", *options
-        control = self._grounded("phases/topomap", *files, arguments=options)
+        control = self._grounded("phases/topomap", *files, arguments=[*BRAVE, *options])
+        unseen, settled = self._unseen(control, conflicts, ("at", 3))
+        if settled:
+            for atom in unseen:
+                self._know("out", *atom.arguments)
+        return settled
+
+    def lines(self) -> None:
+        control = self._grounded("phases/lines", arguments=BRAVE)
+        unseen, settled = self._unseen(control, TRY_HARD, ("same", 3), ("new", 1))
+        for atom in unseen:
+            if settled:
+                self._know({"same": "apart", "new": "old"}[atom.name], *atom.arguments)
+            elif atom.name == "same":
+                self._know("rare", *atom.arguments)
+
+    def _unseen(
+        self, control: clingo.Control, conflicts: int, *asked: tuple[str, int]
+    ) -> tuple[list[Symbol], bool]:
+        """The atoms of these predicates that are in no answer, so far as answers were found
+        within so many conflicts; and whether all were."""
+        atoms = control.symbolic_atoms
+        unseen = {atom.symbol for name in asked for atom in atoms.by_signature(*name)}
         _limit(control, conflicts)
-        asked = {atom.symbol for atom in control.symbolic_atoms.by_signature("at", 3)}
-        possible: set[Symbol] = set()
         with control.solve(yield_=True) as models:
             for model in models:
                 self._heed(control)
-                possible = set(model.symbols(shown=True))
-            if not models.get().exhausted:
-                return False
-        for atom in sorted(asked - possible):
-            self._know("out", *atom.arguments)
-        return True
+                unseen.difference_update(model.symbols(shown=True))
+            return sorted(unseen), bool(models.get().exhausted)
 
 
 def _limit(control: clingo.Control, conflicts: int) -> None:

@@ -175,6 +175,8 @@ class Program:
                 facts = phases.found(*self.asked, FORMS["fast"], self._heed)
                 self._heed(self.control)
                 self.control.add("base", [], facts)
+                if "rare(" in facts:
+                    self.control.configuration.solver.heuristic = "Domain"  # type: ignore[union-attr]
             self.control.ground()
             self._grounded = True
         self.control.solve([*_assumed(cube), *more], on_model=on_model)
