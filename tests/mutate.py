@@ -65,6 +65,7 @@ INCLUDE = re.compile(r'^#include "(.+)\.lp"\.', re.MULTILINE)
 FAST = "fast/"
 
 Key = tuple[str, str, str]  # the file, the rule and the change of a mutant
+Programs = dict[tuple[str, ...], str]  # by the files of a query
 
 
 @dataclass(frozen=True)
@@ -223,9 +224,9 @@ def rules(program: str, facts: str) -> int:
     return int(control.statistics["problem"]["lp"]["rules"])
 
 
-def suffer(programs: dict[tuple[str, ...], str], asked: list[Query]) -> str:
-    """The fate of a mutant, in programs by the files of a query, at the first query that it
-    does not survive. A query that takes too long ends the process."""
+def suffer(programs: Programs, whole: Programs, asked: list[Query]) -> str:
+    """The fate of a mutant at the first query that it does not survive; none if the programs
+    without it do not survive that either. A query that takes too long ends the process."""
     resource.setrlimit(resource.RLIMIT_AS, (BYTES, BYTES))
     for query in asked:
         signal.setitimer(signal.ITIMER_PROF, SECONDS)
@@ -234,7 +235,8 @@ def suffer(programs: dict[tuple[str, ...], str], asked: list[Query]) -> str:
         except MemoryError:
             return "endless"
         if fate != "survived":
-            return fate
+            signal.setitimer(signal.ITIMER_PROF, SECONDS)
+            return fate if tried(whole[query.files], query) == "survived" else ""
     return "survived"
 
 
@@ -249,8 +251,9 @@ def fates(
     def program(files: tuple[str, ...]) -> str:
         return "\n".join(text for name in loaded[files] for text in texts[name])
 
+    whole = {files: program(files) for files in loaded}
     fast = any(mutant.file.startswith(FAST) for mutant in chosen)
-    least = [(query, rules(program(query.files), query.facts)) for query in measured if fast]
+    least = [(query, rules(whole[query.files], query.facts)) for query in measured if fast]
     waiting = list(reversed(chosen))
     running: dict[int, Mutant] = {}
     try:
@@ -268,7 +271,8 @@ def fates(
                         for files, every in loaded.items()
                         if tries(files, every, mutant.file)
                     }
-                    fate = suffer(mutated, [query for query in asked if query.files in mutated])
+                    mine = [query for query in asked if query.files in mutated]
+                    fate = suffer(mutated, whole, mine)
                     if fate == "survived" and mutant.file.startswith(FAST):
                         signal.setitimer(signal.ITIMER_PROF, SECONDS * len(measured))
                         more = sum(
@@ -277,12 +281,14 @@ def fates(
                             if query.files in mutated
                         )
                         fate = "larger" if more > 0 else fate
-                    code = FATES.index(fate)
+                    code = FATES.index(fate) if fate else len(FATES) + 1
                 finally:
                     os._exit(code)
             child, status = os.wait()
             mutant, code = running.pop(child), os.waitstatus_to_exitcode(status)
-            if code >= len(FATES):
+            if code > len(FATES):
+                raise InputError(f"{mutant.file}: a query has a wrong answer without a change")
+            if code == len(FATES):
                 raise RuntimeError(f"could not try {mutant}")
             yield mutant, FATES[code] if code >= 0 else "endless"
     finally:
