@@ -16,7 +16,7 @@ from flawed import DEMANDS, INSTANCES, by_hand, drawn
 from topomap.check import STEP_RULES, by_definition, by_rules
 from topomap.experience import Experience
 from topomap.solver import FORMS
-from worlds import WORLDS, of_grid, random_experience
+from worlds import WORLDS, of_grid, random_experience, walked
 
 
 def seen(*steps, slots=4):
@@ -99,6 +99,9 @@ EXPERIENCES = {
         "4: 0 2 4 5 6",
         slots=8,
     ),
+    # Two paths that meet twice: on no run of either; on two runs that an earlier one joins.
+    "lens": walked(4, "p1 x3 x1 q3 x2 c0 c3 y1 p2 y0 y2 q0", "p1", "1 2 3 2 3 2 3 0"),
+    "fork": walked(4, "p1 q3 p2 y0 y2 z0 z2 q0 z1 c3 c0 d2 d3 y1", "y2", "2 1 0 3 0 1 0"),
     "star": seen("0 1 2", "0: 0", "0: 0 1 2", "1: 0", "0: 0 1 5", "1: 0", "0: 0 4 5", slots=6),
 }
 
@@ -108,8 +111,16 @@ EXPERIENCES = {
 DRAWN = [*((seed, 8, seed % 3) for seed in range(100)), (602, 14, 0), (2408, 12, 0)]
 
 
-# Walks whose runs meet at places of four gateways, found by such a search.
+# Walks whose runs meet at places of four gateways, most of them found by such a search.
 WALKS = [
+    # Runs that pass no such place are on one path with runs that do.
+    seen(
+        *("0 2", "0: 0", "0: 0 2", "2: 0 1 2 3", "2: 0 1", "1: 0 1", "1: 0 1", "1: 0 1 2 3"),
+        *("2: 0 2", "2: 0", "0: 0 2"),
+    ),
+    # Runs of one path pass as many such places as there are runs that do, and more.
+    of_grid(3, 4, "grid", (1, 0, 1), "EEWWNESSENN"),
+    of_grid(3, 5, "grid", (1, 0, 1), "EEEWWWSENNESSENN"),
     of_grid(2, 3, "grid", (1, 2, 0), "WNSNWS"),
     of_grid(4, 4, "grid", (2, 0, 2), "ESEWN"),
     of_grid(3, 3, "grid", (2, 2, 3), "WWNNSENE"),
@@ -204,18 +215,19 @@ def hypotheses(facts: str, arguments: tuple[str, ...], truth: Truth) -> Iterator
 def phases() -> Iterator[Query]:
     """The programs of the phases: which visits can be of one place; which runs can lie on one
     path or cross; and the hypotheses that are left by what was found."""
-    draw = random.Random("phases")
     experiences = [*(EXPERIENCES | WORLDS).values()]
     experiences += WALKS
     experiences += [random_experience(random.Random(f"corpus {seed}"), 8) for seed in range(60)]
     for experience in experiences:
         facts = experience.facts()
-        pairs = phased.Pairs(experience).shown()
-        yield Query(("fast/phases/visits",), facts, shown(*pairs))
-        facts += "".join(f"{atom}. " for atom in pairs)
+        draw = random.Random(facts)
+        pairs = phased.Pairs(experience)
+        yield Query(("fast/phases/visits",), facts, shown(*pairs.shown()))
+        facts += "".join(f"{atom}. " for atom in pairs.shown())
         truth = Truth(experience)
         yield left(facts, experience, truth, [])
         yield left(facts, experience, truth, [], "boundary")
+        yield begun(facts, experience, pairs, draw.randint(0, experience.steps))
         founds = [[]]
         if truth.final:
             at = draw.choice(sorted(truth.final))
@@ -242,6 +254,17 @@ def left(facts: str, experience: Experience, truth: Truth, found: list, *parts: 
     )
     files = tuple(f"fast/{name}" for name in ("phases/topomap", *parts))
     return Query(files, facts + phased.text(found), answers)
+
+
+def begun(facts: str, experience: Experience, pairs: phased.Pairs, horizon: int) -> Query:
+    """What is asked of a beginning: its hypotheses, but for those which take visits to be of
+    one place that the whole tells apart."""
+    answers = frozenset(
+        ((), frozenset(f"at({t},{p},{s})" for t, (p, s) in enumerate(at)))
+        for at in Truth(experience.cut(horizon)).final
+        if pairs.may.issuperset(phased.same(at, experience.slots))
+    )
+    return Query(("fast/phases/topomap",), facts, answers, ("-c", f"horizon={horizon}"))
 
 
 def sizes() -> list[Query]:
