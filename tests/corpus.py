@@ -14,7 +14,9 @@ import phased
 from conftest import ENCODINGS, PARTS, Truth
 from flawed import DEMANDS, INSTANCES, by_hand, drawn
 from topomap.check import STEP_RULES, by_definition, by_rules
+from topomap.environment import grid
 from topomap.experience import Experience
+from topomap.generate import instance
 from topomap.solver import FORMS
 from worlds import WORLDS, of_grid, random_experience, walked
 
@@ -268,12 +270,20 @@ def begun(facts: str, experience: Experience, pairs: phased.Pairs, horizon: int)
 
 
 def sizes() -> list[Query]:
-    """What the size of the fast encodings is taken by: each experience with all the parts, and
-    one in five of what is asked of the phases."""
+    """What the size of the fast encodings is taken by: each experience with all the parts, one
+    in five of what is asked of the phases, and a large exploration of which it is known what
+    visits are new."""
     files = tuple(f"fast/{part}" for part in ("topomap", "bound", *PARTS, "genus", "minimal"))
     whole = [Query(files, seen.facts(), frozenset()) for seen in (EXPERIENCES | WORLDS).values()]
     phases = [query for query in queries() if query.files[0].startswith("fast/phases/")]
-    return whole + phases[::5]
+    made = instance(grid(5, 5), "snake")
+    found = phased.drawn(random.Random(0), made.experience, made.truth, 1)
+    known = phased.text(fact for fact in found if fact[0] in ("new", "old"))
+    pairs = "".join(f"{atom}. " for atom in phased.Pairs(made.experience).shown())
+    large = Query(
+        ("fast/phases/topomap", "fast/planar"), made.experience.facts() + pairs + known, frozenset()
+    )
+    return [*whole, *phases[::5], large]
 
 
 def check() -> Iterator[Query]:
@@ -293,7 +303,8 @@ def check() -> Iterator[Query]:
 
 
 def demands() -> Iterator[Query]:
-    """Demands that are known, and others."""
+    """Demands that are known, and others; and nothing at all."""
+    yield Query(("check",), "", shown("violation(exactly_one,0)"))
     facts = "slots(4). view(0,0). view(1,0). turn(1,0). at(0,0,0). at(1,1,0). "
     sound = ("planar", "closed", "travelled", "boundary", "perpendicular")
     for demand in (*sound, "bound(2)", "bound(2147483647)"):
@@ -313,4 +324,6 @@ SUITES = (theory, phases, check, demands, faults)
 
 @cache
 def queries() -> list[Query]:
-    return [query for suite in SUITES for query in suite()]
+    """All of them, mixed, as that kills a mutant soon."""
+    every = [query for suite in SUITES for query in suite()]
+    return random.Random("queries").sample(every, len(every))
