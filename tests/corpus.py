@@ -303,8 +303,10 @@ def check() -> Iterator[Query]:
 
 
 def demands() -> Iterator[Query]:
-    """Demands that are known, and others; and nothing at all."""
-    yield Query(("check",), "", shown("violation(exactly_one,0)"))
+    """Demands that are known, and others; and no map, or nothing at all."""
+    nowhere = "violation(exactly_one,0)"
+    yield Query(("check",), "", shown(nowhere))
+    yield Query(("check",), "slots(4). demand(plan).", shown(nowhere, "violation(plan,0)"))
     facts = "slots(4). view(0,0). view(1,0). turn(1,0). at(0,0,0). at(1,1,0). "
     sound = ("planar", "closed", "travelled", "boundary", "perpendicular")
     for demand in (*sound, "bound(2)", "bound(2147483647)"):

@@ -47,7 +47,8 @@ greater or one less. Mutants that read the same are one. Each is asked the queri
 `fast/` the ones that load `fast/topomap.lp`, the others those that do not. It is *killed*
 when one gives other answers (other models, shown atoms or costs, or a model twice), *refused*
 when clingo has an error or a message for it, *endless* when a query takes more than {seconds}
-seconds of the processor or {memory} MiB of memory. When all answers are right, a mutant of
+seconds of the processor or {memory} MiB of memory. (If the encoding without the change gives
+other answers too, the run ends with an error.) When all answers are right, a mutant of
 `fast/`, whose worth is in its size, is *larger* if it grounds to more rules, over all named
 experiences with all the parts and some of what `fast/phases/` is asked. Another one is
 *equivalent* if `tests/equivalent.toml` says why, and has *survived* if not. Comments and
