@@ -14,9 +14,9 @@ import phased
 from conftest import ENCODINGS, PARTS, Truth
 from flawed import DEMANDS, INSTANCES, by_hand, drawn
 from topomap.check import STEP_RULES, by_definition, by_rules
-from topomap.environment import grid
-from topomap.experience import Experience
-from topomap.generate import instance
+from topomap.environment import EAST, WEST, grid
+from topomap.experience import Experience, explore
+from topomap.route import snake
 from topomap.solver import FORMS
 from worlds import WORLDS, of_grid, random_experience, walked
 
@@ -122,7 +122,7 @@ WALKS = [
     ),
     # Runs of one path pass as many such places as there are runs that do, and more.
     of_grid(3, 4, "grid", (1, 0, 1), "EEWWNESSENN"),
-    of_grid(3, 5, "grid", (1, 0, 1), "EEEWWWSENNESSENN"),
+    marked(of_grid(3, 5, "grid", (1, 0, 1), "EEEWWWSENNESSENN"), 2, 4, 12),
     of_grid(2, 3, "grid", (1, 2, 0), "WNSNWS"),
     of_grid(4, 4, "grid", (2, 0, 2), "ESEWN"),
     of_grid(3, 3, "grid", (2, 2, 3), "WWNNSENE"),
@@ -276,14 +276,14 @@ def sizes() -> list[Query]:
     files = tuple(f"fast/{part}" for part in ("topomap", "bound", *PARTS, "genus", "minimal"))
     whole = [Query(files, seen.facts(), frozenset()) for seen in (EXPERIENCES | WORLDS).values()]
     phases = [query for query in queries() if query.files[0].startswith("fast/phases/")]
-    made = instance(grid(5, 5), "snake")
-    found = phased.drawn(random.Random(0), made.experience, made.truth, 1)
+    made = grid(5, 5)
+    route = [EAST, WEST] * 2 + snake(made)
+    experience, truth = explore(made.map, ((0, 0), EAST), route)
+    found = phased.drawn(random.Random(0), experience, truth, 1)
     known = phased.text(fact for fact in found if fact[0] in ("new", "old"))
-    pairs = "".join(f"{atom}. " for atom in phased.Pairs(made.experience).shown())
-    large = Query(
-        ("fast/phases/topomap", "fast/planar"), made.experience.facts() + pairs + known, frozenset()
-    )
-    return [*whole, *phases[::5], large]
+    pairs = "".join(f"{atom}. " for atom in phased.Pairs(experience).shown())
+    large = experience.facts() + pairs + known
+    return [*whole, *phases[::5], Query(("fast/phases/topomap", "fast/planar"), large, frozenset())]
 
 
 def check() -> Iterator[Query]:
