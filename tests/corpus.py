@@ -13,10 +13,12 @@ from functools import cache
 import phased
 from conftest import ENCODINGS, PARTS, Truth
 from flawed import DEMANDS, INSTANCES, by_hand, drawn
-from topomap.check import by_definition
-from topomap.experience import Experience
+from topomap.check import STEP_RULES, by_definition, by_rules
+from topomap.environment import EAST, WEST, grid
+from topomap.experience import Experience, explore
+from topomap.route import snake
 from topomap.solver import FORMS
-from worlds import WORLDS, of_grid, random_experience
+from worlds import WORLDS, of_grid, random_experience, walked
 
 
 def seen(*steps, slots=4):
@@ -99,6 +101,9 @@ EXPERIENCES = {
         "4: 0 2 4 5 6",
         slots=8,
     ),
+    # Two paths that meet twice: on no run of either; on two runs that an earlier one joins.
+    "lens": walked(4, "p1 x3 x1 q3 x2 c0 c3 y1 p2 y0 y2 q0", "p1", "1 2 3 2 3 2 3 0"),
+    "fork": walked(4, "p1 q3 p2 y0 y2 z0 z2 q0 z1 c3 c0 d2 d3 y1", "y2", "2 1 0 3 0 1 0"),
     "star": seen("0 1 2", "0: 0", "0: 0 1 2", "1: 0", "0: 0 1 5", "1: 0", "0: 0 4 5", slots=6),
 }
 
@@ -108,8 +113,16 @@ EXPERIENCES = {
 DRAWN = [*((seed, 8, seed % 3) for seed in range(100)), (602, 14, 0), (2408, 12, 0)]
 
 
-# Walks whose runs meet at places of four gateways, found by such a search.
+# Walks whose runs meet at places of four gateways, most of them found by such a search.
 WALKS = [
+    # Runs that pass no such place are on one path with runs that do.
+    seen(
+        *("0 2", "0: 0", "0: 0 2", "2: 0 1 2 3", "2: 0 1", "1: 0 1", "1: 0 1", "1: 0 1 2 3"),
+        *("2: 0 2", "2: 0", "0: 0 2"),
+    ),
+    # Runs of one path pass as many such places as there are runs that do, and more.
+    of_grid(3, 4, "grid", (1, 0, 1), "EEWWNESSENN"),
+    marked(of_grid(3, 5, "grid", (1, 0, 1), "EEEWWWSENNESSENN"), 2, 4, 12),
     of_grid(2, 3, "grid", (1, 2, 0), "WNSNWS"),
     of_grid(4, 4, "grid", (2, 0, 2), "ESEWN"),
     of_grid(3, 3, "grid", (2, 2, 3), "WWNNSENE"),
@@ -205,18 +218,19 @@ def phases() -> Iterator[Query]:
     """The programs of the phases: which visits can be of one place; which runs can lie on one
     path or cross; the closed and perpendicular maps; and the hypotheses that are left by what
     was found."""
-    draw = random.Random("phases")
     experiences = [*(EXPERIENCES | WORLDS).values()]
     experiences += WALKS
     experiences += [random_experience(random.Random(f"corpus {seed}"), 8) for seed in range(60)]
     for experience in experiences:
         facts = experience.facts()
-        pairs = phased.Pairs(experience).shown()
-        yield Query(("fast/phases/visits",), facts, shown(*pairs))
-        facts += "".join(f"{atom}. " for atom in pairs)
+        draw = random.Random(facts)
+        pairs = phased.Pairs(experience)
+        yield Query(("fast/phases/visits",), facts, shown(*pairs.shown()))
+        facts += "".join(f"{atom}. " for atom in pairs.shown())
         truth = Truth(experience)
         yield left(facts, experience, truth, [])
         yield left(facts, experience, truth, [], "boundary")
+        yield begun(facts, experience, pairs, draw.randint(0, experience.steps))
         founds = [[]]
         if truth.final:
             at = draw.choice(sorted(truth.final))
@@ -263,24 +277,43 @@ def ends() -> Iterator[Query]:
         yield replace(asked, files=files, arguments=("--eq=0",))
 
 
+def begun(facts: str, experience: Experience, pairs: phased.Pairs, horizon: int) -> Query:
+    """What is asked of a beginning: its hypotheses, but for those which take visits to be of
+    one place that the whole tells apart."""
+    answers = frozenset(
+        ((), frozenset(f"at({t},{p},{s})" for t, (p, s) in enumerate(at)))
+        for at in Truth(experience.cut(horizon)).final
+        if pairs.may.issuperset(phased.same(at, experience.slots))
+    )
+    return Query(("fast/phases/topomap",), facts, answers, ("-c", f"horizon={horizon}"))
+
+
 def sizes() -> list[Query]:
-    """What the size of the fast encodings is taken by: each experience with all the parts, and
-    one in five of what is asked of the phases."""
+    """What the size of the fast encodings is taken by: each experience with all the parts, one
+    in five of what is asked of the phases, and a large exploration of which it is known what
+    visits are new."""
     files = tuple(f"fast/{part}" for part in ("topomap", "bound", *PARTS, "genus", "minimal"))
     whole = [Query(files, seen.facts(), frozenset()) for seen in (EXPERIENCES | WORLDS).values()]
     phases = [query for query in queries() if query.files[0].startswith("fast/phases/")]
-    return whole + phases[::5]
+    made = grid(5, 5)
+    route = [EAST, WEST] * 2 + snake(made)
+    experience, truth = explore(made.map, ((0, 0), EAST), route)
+    found = phased.drawn(random.Random(0), experience, truth, 1)
+    known = phased.text(fact for fact in found if fact[0] in ("new", "old"))
+    pairs = "".join(f"{atom}. " for atom in phased.Pairs(experience).shown())
+    large = experience.facts() + pairs + known
+    return [*whole, *phases[::5], Query(("fast/phases/topomap", "fast/planar"), large, frozenset())]
 
 
 def check() -> Iterator[Query]:
-    """Maps, sound and with errors, with the violations that are there by definition. Of a map
-    with two links at a gateway paths are not defined, so of the random ones these are left
-    out."""
-    hand = list(by_hand())
-    for number, (experience, at) in enumerate([*hand, *drawn(120)]):
+    """Maps, sound and with errors, with the violations that are there by definition. What a
+    broken step does to the map as a whole is not defined, so a map with one is asked only
+    where both checkers say the same."""
+    for experience, at in [*by_hand(), *drawn(120)]:
         for demands in (DEMANDS, ()):
             violations = by_definition(experience, at, demands)
-            if "schema" in dict(violations) and number >= len(hand):
+            broken = STEP_RULES & dict(violations).keys()
+            if broken and by_rules(experience, at, demands) != violations:
                 continue
             facts = [f"at({step},{place},{slot})." for step, place, slot in at]
             facts += [f"demand({demand})." for demand in demands]
@@ -289,9 +322,13 @@ def check() -> Iterator[Query]:
 
 
 def demands() -> Iterator[Query]:
-    """Demands that are known, and others."""
+    """Demands that are known, and others; and no map, or nothing at all."""
+    nowhere = "violation(exactly_one,0)"
+    yield Query(("check",), "", shown(nowhere))
+    yield Query(("check",), "slots(4). demand(plan).", shown(nowhere, "violation(plan,0)"))
     facts = "slots(4). view(0,0). view(1,0). turn(1,0). at(0,0,0). at(1,1,0). "
-    for demand in ("planar", "closed", "travelled", "boundary", "perpendicular", "bound(2)"):
+    sound = ("planar", "closed", "travelled", "boundary", "perpendicular")
+    for demand in (*sound, "bound(2)", "bound(2147483647)"):
         yield Query(("check",), f"{facts} demand({demand}).", shown())
     for demand in ("plannar", "bound", "bound(a)", "bound(#inf)", '"closed"', "2"):
         yield Query(("check",), f"{facts} demand({demand}).", shown(f"violation({demand},1)"))
@@ -308,4 +345,6 @@ SUITES = (theory, phases, ends, check, demands, faults)
 
 @cache
 def queries() -> list[Query]:
-    return [query for suite in SUITES for query in suite()]
+    """All of them, mixed, as that kills a mutant soon."""
+    every = [query for suite in SUITES for query in suite()]
+    return random.Random("queries").sample(every, len(every))

@@ -47,7 +47,8 @@ greater or one less. Mutants that read the same are one. Each is asked the queri
 `fast/` the ones that load `fast/topomap.lp`, the others those that do not. It is *killed*
 when one gives other answers (other models, shown atoms or costs, or a model twice), *refused*
 when clingo has an error or a message for it, *endless* when a query takes more than {seconds}
-seconds of the processor or {memory} MiB of memory. When all answers are right, a mutant of
+seconds of the processor or {memory} MiB of memory. (If the encoding without the change gives
+other answers too, the run ends with an error.) When all answers are right, a mutant of
 `fast/`, whose worth is in its size, is *larger* if it grounds to more rules, over all named
 experiences with all the parts and some of what `fast/phases/` is asked. Another one is
 *equivalent* if `tests/equivalent.toml` says why, and has *survived* if not. Comments,
@@ -65,6 +66,7 @@ INCLUDE = re.compile(r'^#include "(.+)\.lp"\.', re.MULTILINE)
 FAST = "fast/"
 
 Key = tuple[str, str, str]  # the file, the rule and the change of a mutant
+Programs = dict[tuple[str, ...], str]  # by the files of a query
 
 
 @dataclass(frozen=True)
@@ -225,9 +227,9 @@ def rules(program: str, facts: str) -> int:
     return int(control.statistics["problem"]["lp"]["rules"])
 
 
-def suffer(programs: dict[tuple[str, ...], str], asked: list[Query]) -> str:
-    """The fate of a mutant, in programs by the files of a query, at the first query that it
-    does not survive. A query that takes too long ends the process."""
+def suffer(programs: Programs, whole: Programs, asked: list[Query]) -> str:
+    """The fate of a mutant at the first query that it does not survive; none if the programs
+    without it do not survive that either. A query that takes too long ends the process."""
     resource.setrlimit(resource.RLIMIT_AS, (BYTES, BYTES))
     for query in asked:
         signal.setitimer(signal.ITIMER_PROF, SECONDS)
@@ -236,7 +238,8 @@ def suffer(programs: dict[tuple[str, ...], str], asked: list[Query]) -> str:
         except MemoryError:
             return "endless"
         if fate != "survived":
-            return fate
+            signal.setitimer(signal.ITIMER_PROF, SECONDS)
+            return fate if tried(whole[query.files], query) == "survived" else ""
     return "survived"
 
 
@@ -251,8 +254,9 @@ def fates(
     def program(files: tuple[str, ...]) -> str:
         return "\n".join(text for name in loaded[files] for text in texts[name])
 
+    whole = {files: program(files) for files in loaded}
     fast = any(mutant.file.startswith(FAST) for mutant in chosen)
-    least = [(query, rules(program(query.files), query.facts)) for query in measured if fast]
+    least = [(query, rules(whole[query.files], query.facts)) for query in measured if fast]
     waiting = list(reversed(chosen))
     running: dict[int, Mutant] = {}
     try:
@@ -270,7 +274,8 @@ def fates(
                         for files, every in loaded.items()
                         if tries(files, every, mutant.file)
                     }
-                    fate = suffer(mutated, [query for query in asked if query.files in mutated])
+                    mine = [query for query in asked if query.files in mutated]
+                    fate = suffer(mutated, whole, mine)
                     if fate == "survived" and mutant.file.startswith(FAST):
                         signal.setitimer(signal.ITIMER_PROF, SECONDS * len(measured))
                         more = sum(
@@ -279,12 +284,14 @@ def fates(
                             if query.files in mutated
                         )
                         fate = "larger" if more > 0 else fate
-                    code = FATES.index(fate)
+                    code = FATES.index(fate) if fate else len(FATES) + 1
                 finally:
                     os._exit(code)
             child, status = os.wait()
             mutant, code = running.pop(child), os.waitstatus_to_exitcode(status)
-            if code >= len(FATES):
+            if code > len(FATES):
+                raise InputError(f"{mutant.file}: a query has a wrong answer without a change")
+            if code == len(FATES):
                 raise RuntimeError(f"could not try {mutant}")
             yield mutant, FATES[code] if code >= 0 else "endless"
     finally:

@@ -112,6 +112,7 @@ def holds(fact, experience, pairs: list[Pair]) -> bool:
         return not (first and (place, step, slot) in pairs)
     a, b, crossing = numbers
     one, other = _runs(experience)[a], _runs(experience)[b]
+    pairs = [*pairs, *((t, t, 0) for t in one if t in other)]
     return not any(
         p in one
         and t in other

@@ -74,7 +74,7 @@ AGGREGATES = {
     "input": ["M = #max { T: turned(T) }"],
     "theory/places": ["1 = { at(T,P,S): fits(T,P,S) }"],
     "fast/core/places": ["1 = { at(T,P,S): may(P,T,S), first(P), not found(out(T,P,S)) }"],
-    "fast/planar": ["1 <= { may(Q,(T-1),X): first(Q) } <= 1"],
+    "fast/planar": ["1 >= { may(Q,(T-1),X): first(Q) }"],
     "fast/phases/counts": [
         "N = #count { T: pass(A,T,_), cross(T) }",
         "L = #count { C: through(C) }",
