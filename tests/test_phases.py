@@ -187,12 +187,11 @@ def test_what_is_asked_up_to_a_step_is_not_told_by_later_ones():
     assert len(agree(experience, None, MORE[:1], searched=False)) < 8
 
 
-@pytest.mark.parametrize("phase", ["beginnings", "lines"])
 @pytest.mark.parametrize("tries", [1, 5, 20])
-def test_a_question_that_is_given_up_tells_nothing(monkeypatch, tries, phase):
+def test_a_question_that_is_given_up_tells_nothing(monkeypatch, tries):
     monkeypatch.setattr(phases, "TRY_HARD", tries)
     made = instance(grid(5, 5), "snake")
-    _, known = claims(made.experience, (phase,))
+    _, known = claims(made.experience, ("beginnings",))
     judge = Map(made.experience, made.truth)
     certain = [f for f in known if f.name != "rare"]
     assert all(judge.accepts(f.name, *(a.number for a in f.arguments)) for f in certain)
@@ -220,6 +219,25 @@ def test_bounds(block):
 def test_many_bounds():
     for number in range(300):
         agree_on_bounds(f"long {number}", 20)
+
+
+def test_what_is_rare_is_not_lost(monkeypatch):
+    """Maps that lines.lp has not come to are found later."""
+    by_lines(monkeypatch)
+    snake = instance(grid(4, 4), "snake").experience
+    settled = found(solver.hypotheses, snake, SQUARE)
+    monkeypatch.setattr(phases, "TRY_HARD", 15)
+    known = claims(snake, ("lines",))[1]
+    assert {fact.name for fact in known} == {"rare"}
+    assert any(is_rare(fact, at) for fact in known for at in settled)
+    assert found(solver.hypotheses, snake, SQUARE) == settled
+    assert len(settled) == 256
+
+
+def is_rare(fact, at):
+    """Whether a map has it."""
+    old, step, slot = (argument.number for argument in fact.arguments)
+    return at[step][0] == at[old][0] and (at[step][1] - at[old][1]) % 4 == slot
 
 
 def by_lines(monkeypatch):

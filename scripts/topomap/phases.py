@@ -195,19 +195,22 @@ class _Phases:
         return settled
 
     def lines(self) -> None:
-        control = self._grounded("phases/lines", arguments=BRAVE)
+        # With another configuration it may be long before there is a first map at all.
+        control = self._grounded("phases/lines", arguments=[*BRAVE, "--configuration=handy"])
         unseen, settled = self._unseen(control, TRY_HARD, ("same", 3), ("new", 1))
         for atom in unseen:
             if settled:
                 self._know({"same": "apart", "new": "old"}[atom.name], *atom.arguments)
             elif atom.name == "same":
                 self._know("rare", *atom.arguments)
+            else:
+                self._know("rare", *atom.arguments * 2, Number(0))
 
     def _unseen(
         self, control: clingo.Control, conflicts: int, *asked: tuple[str, int]
     ) -> tuple[list[Symbol], bool]:
         """The atoms of these predicates that are in no answer, so far as answers were found
-        within so many conflicts; and whether all were."""
+        within so many conflicts; and whether all were. If none was, there is nothing to tell."""
         atoms = control.symbolic_atoms
         unseen = {atom.symbol for name in asked for atom in atoms.by_signature(*name)}
         _limit(control, conflicts)
@@ -215,7 +218,8 @@ class _Phases:
             for model in models:
                 self._heed(control)
                 unseen.difference_update(model.symbols(shown=True))
-            return sorted(unseen), bool(models.get().exhausted)
+            settled, some = bool(models.get().exhausted), bool(models.get().satisfiable)
+        return sorted(unseen) if settled or some else [], settled
 
 
 def _limit(control: clingo.Control, conflicts: int) -> None:
