@@ -16,6 +16,8 @@ LASSO = ("0 1 2", "0: 0 1 2 3", "0: 0 1 2", "1: 0", "0: 0 1 3", "1: 0 1 2 3")
 TRIANGLE = ("0 3", "0: 0 1", "1: 0 1", "1: 0 1")
 EARS = ("0 1 2 3", "0: 0 1", "1: 0 1", "1: 0 1 2 3", "1: 0 1", "1: 0 1", "1: 0 1 2 3")
 TWISTED = ("0 1", "0: 0 1", "1: 0 3", "3: 0 3")
+# The link in the midst of a street is its newest.
+GROWING = ("0 1 2", "2: 0 1 a", "0: 0 2 3", "2: 0 3", "3: 0 2 3", "2: 0 3 a")
 CORNERS = ("0 1", "0: 0 1", "1: 0 3")
 # The rule, what is seen ("turn: gateways", and landmarks), a sound map and a map that breaks
 # it, as a place and a gateway after each step, and the step at which it does.
@@ -46,6 +48,7 @@ MAPS = [
     ("boundary", TWISTED, "0.0 1.0 2.0", "0.0 1.0 2.0 0.1", 3),
     ("perpendicular", CORNERS, "0.0 1.0 2.0", "0.0 1.0 0.1", 2),
     ("perpendicular", TRIANGLE, "0.0 1.0 2.0 3.0", "0.0 1.0 2.0 0.3", 3),
+    ("perpendicular", GROWING, "0.0 1.0 0.2 3.0 4.0 5.0", "0.0 1.0 0.2 3.0 4.0 1.1", 5),
 ]
 
 
