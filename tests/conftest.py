@@ -9,6 +9,7 @@ from collections import Counter
 from pathlib import Path
 
 import clingo
+import hypothesis  # noqa: F401 -- else at the end, beside threads: Python 3.11 has a fault there
 import pytest
 from oracle import Hypothesis, best, tree
 from topomap.solver import FORMS, OPTIMIZING

@@ -183,8 +183,11 @@ class Cluster:
                 for unit in units[number + len(futures) : number + ahead]:
                     call = _at_worker, solver.digest(), work, unit
                     futures.append(self._client.submit(*call, pure=False))
-                yield self._result(futures[0], watch)
+                result = self._result(futures[0], watch)
                 futures.popleft()
+                yield result
+        except self._dask.comm.core.CommClosedError:
+            raise Stopped(LOST) from None
         finally:
             with contextlib.suppress(Exception):  # there may be no cluster any more
                 self._client.cancel(futures)
