@@ -50,7 +50,7 @@ test-long: $(SETUP)
 	$(BIN)/pytest -n $(JOBS)
 
 mutate: $(SETUP)
-	$(BIN)/python tests/mutate.py --jobs $(JOBS)
+	$(BIN)/python tests/mutate.py --jobs $(JOBS) --known build/mutants.txt
 
 lint: $(SETUP)
 	$(BIN)/ruff check scripts tests

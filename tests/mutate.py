@@ -7,6 +7,7 @@ not survive or does not exist; 2 bad input or usage; 130 interrupted.
 """
 
 import argparse
+import hashlib
 import os
 import platform
 import random
@@ -20,6 +21,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from itertools import groupby, product
 from pathlib import Path
+from typing import Any
 
 import clingo
 from clingo import ast
@@ -65,6 +67,7 @@ COMPLEMENT |= {other: one for one, other in COMPLEMENT.items()}
 INCLUDE = re.compile(r'^#include "(.+)\.lp"\.', re.MULTILINE)
 FAST = "fast/"
 
+Trials = Callable[[list["Mutant"]], Iterator[tuple["Mutant", str]]]
 Key = tuple[str, str, str]  # the file, the rule and the change of a mutant
 Programs = dict[tuple[str, ...], str]  # by the files of a query
 
@@ -300,6 +303,43 @@ def fates(
             os.waitpid(child, 0)
 
 
+def marks(
+    folder: Path, chosen: list[Mutant], asked: list[Query], measured: list[Query]
+) -> dict[Mutant, str]:
+    """For each mutant, what tells it, and all that it is tried with, from any other."""
+    loaded = sets(folder, asked + measured)
+    of_file: dict[str, Any] = {}
+    for file in {mutant.file for mutant in chosen}:
+        digest = hashlib.sha256(repr((clingo.__version__, SECONDS, BYTES)).encode())
+        for files, every in loaded.items():
+            if tries(files, every, file):
+                texts = [list(map(str, statements(folder, name))) for name in every]
+                digest.update(repr((files, texts)).encode())
+        for query in asked + measured * file.startswith(FAST):
+            if tries(query.files, loaded[query.files], file):
+                answers = sorted((cost, sorted(atoms)) for cost, atoms in query.answers)
+                digest.update(repr((query.files, query.facts, query.arguments, answers)).encode())
+        of_file[file] = digest
+    found = {}
+    for mutant in chosen:
+        digest = of_file[mutant.file].copy()
+        digest.update(repr((mutant.file, mutant.number, mutant.text)).encode())
+        found[mutant] = digest.hexdigest()
+    return found
+
+
+def going_on(path: Path, mark: dict[Mutant, str], tried: Trials) -> Iterator[tuple[Mutant, str]]:
+    """The fates that a file knows already, then those of the others, which are added to it."""
+    known = dict(line.split() for line in path.read_text().splitlines()) if path.exists() else {}
+    yield from ((mutant, known[mark[mutant]]) for mutant in mark if mark[mutant] in known)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    with path.open("a") as file:
+        for mutant, fate in tried([mutant for mutant in mark if mark[mutant] not in known]):
+            file.write(f"{mark[mutant]} {fate}\n")
+            file.flush()
+            yield mutant, fate
+
+
 def listed(path: Path) -> dict[Key, str]:
     """The mutants that a file lists as equivalent, each with the reason: of an entry, every
     change of every rule in every file that it names."""
@@ -385,6 +425,7 @@ def main(
     parser.add_argument("--seed", default="0", help="of the sample")
     parser.add_argument("--listed", type=Path, default=LISTED, help="the equivalent mutants")
     parser.add_argument("--report", type=Path, default=REPORT, help="the file to write")
+    parser.add_argument("--known", type=Path, help="a file that keeps what was tried, to go on")
     parser.add_argument("files", nargs="*", help="try only these, as theory/links; no report")
     options = parser.parse_args(argv)
     names = named_files(folder)
@@ -401,7 +442,14 @@ def main(
         if options.sample:
             chosen = [mutant for mutant in chosen if mutant.key not in reasons]
             chosen = random.Random(options.seed).sample(chosen, min(options.sample, len(chosen)))
-        trials = fates(folder, chosen, asked(), measured(), options.jobs)
+
+        def tried(left: list[Mutant]) -> Iterator[tuple[Mutant, str]]:
+            return fates(folder, left, asked(), measured(), options.jobs)
+
+        trials = tried(chosen)
+        if options.known:
+            mark = marks(folder, chosen, asked(), measured())
+            trials = going_on(options.known, mark, tried)
         ends = dict(tqdm(trials, "mutants", len(chosen), disable=None))
         fate = {mutant: ends[mutant] for mutant in chosen}
         if not (options.files or options.sample):

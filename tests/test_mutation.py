@@ -105,6 +105,28 @@ def test_all_is_well_if_only_listed_mutants_survive(mutated):
     assert mutated(listing(EQUIVALENT), "-j", "3")[3] == report
 
 
+def test_what_was_tried_is_not_tried_again(mutated, tmp_path, monkeypatch):
+    """Unless the encoding, or a query, is another one."""
+    known = tmp_path / "known.txt"
+    mutated(listing(EQUIVALENT), "--known", str(known), "counter", "--sample", "4")
+    assert len(known.read_text().splitlines()) == 4
+    _, out, _, report = mutated(listing(EQUIVALENT), "--known", str(known))
+    assert out == mutated(listing(EQUIVALENT))[1]
+    tried, fates = [], mutate.fates
+
+    def note(folder, chosen, *more):
+        for mutant, fate in fates(folder, chosen, *more):
+            tried.append(mutant)
+            yield mutant, fate
+
+    monkeypatch.setattr(mutate, "fates", note)
+    assert mutated(listing(EQUIVALENT), "--known", str(known))[3] == report
+    assert not tried
+    (tmp_path / "folder/counter.lp").write_text(COUNTER.replace("n(X)", "n(X), X >= 0"))
+    mutated(listing(EQUIVALENT), "--known", str(known))
+    assert len(tried) > 11
+
+
 def test_a_survivor_that_is_not_listed_is_a_fault(mutated):
     status, out, _, report = mutated("equivalent = []")
     assert status == 1
