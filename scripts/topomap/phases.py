@@ -73,25 +73,34 @@ def program(experience: Experience, query: "Query") -> tuple[list[str], list[str
     return ["phases/topomap"], []
 
 
-def found(experience: Experience, query: "Query", folder: Path, heed: Heed) -> str:
+def found(
+    experience: Experience, query: "Query", folder: Path, heed: Heed, say: Callable[[str], None]
+) -> str:
     """Facts for ``phases/topomap.lp`` that hold in every map which the query asks for.
 
     ``folder`` has the fast encodings; ``heed`` is called between two calls of clingo. The
     controls that it is given may be interrupted; what is found is then less, and as true.
+    ``say`` is told what is done.
     """
     bounded, square = _bounded(experience, query), _square(experience, query)
     if query.horizon is not None:
         experience = experience.cut(query.horizon)
     work = _Phases(experience.facts(), folder, heed)
+    say("which visits can be of one place")
     few = work.visits()
     if bounded:
+        say(f"with {query.places} places")
         work.bounded(query.places or 0)
     if square and few:
+        say("which runs can lie on one path")
         work.runs()
+        say("which places are new")
         work.new()
         if "planar" in query.parts:
+            say("longer and longer beginnings")
             work.beginnings(experience)
     elif square:
+        say("which runs lie on one path")
         work.lines()
     return work.facts()
 

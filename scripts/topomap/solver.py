@@ -108,6 +108,7 @@ class Watch:
     def __init__(self, timeout: float | None = None, quiet: bool = False):
         self.found = 0
         self.signal = False
+        self._title = ""
         self.deadline = None if timeout is None else time.monotonic() + timeout
         interval = 0.2 if sys.stderr.isatty() else 10
         tqdm.monitor_interval = 0  # a thread that may never begin
@@ -118,6 +119,12 @@ class Watch:
     def title(self, text: str) -> None:
         """Say what is being done."""
         self.bar.set_description_str(text, refresh=False)
+        self._title = text
+
+    def phase(self, text: str) -> None:
+        """Say what is being done for it, or that it is done."""
+        words = filter(None, [self._title, text])
+        self.bar.set_description_str(": ".join(words), refresh=False)
 
     def rest(self) -> None:
         """Let the time limit wait."""
@@ -162,6 +169,7 @@ class Program:
         self.control = query.control(experience.facts(), *how)
         self._grounded = self._interrupted = False
         self._solved = self.control  # now or next
+        self.say: Callable[[str], None] = lambda _: None
 
     def solve(
         self,
@@ -172,8 +180,9 @@ class Program:
         """Solve it, with the hypotheses that begin with a cube as the only ones."""
         if not self._grounded:
             if self._phased:
-                facts = phases.found(*self.asked, FORMS["fast"], self._heed)
+                facts = phases.found(*self.asked, FORMS["fast"], self._heed, self.say)
                 self._heed(self.control)
+                self.say("")
                 self.control.add("base", [], facts)
                 if "rare(" in facts:
                     self.control.configuration.solver.heuristic = "Domain"  # type: ignore[union-attr]
@@ -308,6 +317,7 @@ def _in_thread(
         except Exception as error:  # raised again in the caller's thread
             put(error)
 
+    program.say = watch.phase
     worker = _Worker.hire()
     over = worker.do(run)
     ended = False
