@@ -196,7 +196,7 @@ class _Phases:
                 self._know("out", *atom.arguments)
         return settled
 
-    def lines(self, planarity: Planarity | None) -> None:
+    def lines(self, planarity: Planarity | None = None) -> None:
         # With another configuration it may be long before there is a first map at all.
         control = self._grounded("phases/lines", arguments=[*BRAVE, "--configuration=handy"])
         if planarity:
