@@ -198,7 +198,10 @@ class _Phases:
 
     def lines(self, planarity: Planarity | None = None) -> None:
         # With another configuration it may be long before there is a first map at all.
-        control = self._grounded("phases/lines", arguments=[*BRAVE, "--configuration=handy"])
+        options = [*BRAVE, "--configuration=handy"]
+        if planarity:
+            options.append("--sat-prepro=no")  # it takes long, and the search then does not
+        control = self._grounded("phases/lines", arguments=options)
         if planarity:
             control.register_propagator(planarity)
         unseen, settled = self._unseen(control, TRY_HARD, ("same", 3), ("new", 1))
