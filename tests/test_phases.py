@@ -5,9 +5,10 @@ import json
 import random
 from itertools import combinations, combinations_with_replacement, pairwise
 
+import phased
 import pytest
 from conftest import TRIED
-from topomap import phases, search, solver
+from topomap import phases, plane, search, solver
 from topomap.check import by_definition
 from topomap.environment import grid, maze, world
 from topomap.experience import Experience, explore
@@ -254,6 +255,53 @@ def test_lines(monkeypatch, tries):
     for number in range(8):
         experience, horizon = toured(random.Random(f"lines {number}"), 20)
         agree(experience, horizon, MORE[:2], searched=False)
+
+
+def planar_lines(experience):
+    """The maps that lines.lp has with the clauses of planarity, and without, all listed."""
+    work = phases._Phases(experience.facts(), FORMS["fast"], lambda _: None)
+    work.visits()
+    answers = []
+    for clauses in (True, False):
+        control = work._grounded("phases/lines", arguments=["0", "--project"])
+        if clauses:
+            control.register_propagator(plane.Planarity(4))
+        with control.solve(yield_=True) as models:
+            answers.append([frozenset(map(str, m.symbols(shown=True))) for m in models])
+        assert len(answers[-1]) == len(set(answers[-1]))
+    return [set(maps) for maps in answers]
+
+
+def refuses_what_is_not_planar(draw, most):
+    """How many maps, at most, were refused: all that are not planar, and no other."""
+    experience, _ = toured(draw, most, draw.choice([square_world, crossing_streets]))
+    left, every = planar_lines(experience)
+    planar = found(solver.hypotheses, experience, (*SQUARE, "planar"), "plain")
+    assert left == {shown for _, shown in phased.lines(experience, planar)}, experience.facts()
+    return len(every - left)
+
+
+@pytest.mark.parametrize("often", [1, plane.EVERY])
+def test_planarity_by_clauses(monkeypatch, often):
+    monkeypatch.setattr(plane, "EVERY", often)
+    refused = [
+        refuses_what_is_not_planar(random.Random(f"plane {number}"), 24) for number in range(60)
+    ]
+    assert sum(map(bool, refused)) >= 5
+
+
+def test_planarity_by_clauses_on_the_paper():
+    """Of 256 closed perpendicular maps of the 4x4 snake one is planar."""
+    left, every = planar_lines(instance(grid(4, 4), "snake").experience)
+    assert (len(left), len(every)) == (1, 256)
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("block", range(10))
+def test_planarity_by_clauses_of_many(monkeypatch, block):
+    monkeypatch.setattr(plane, "EVERY", 1 + block)
+    for number in range(60):
+        refuses_what_is_not_planar(random.Random(f"plane {block}/{number}"), 26)
 
 
 @pytest.mark.long

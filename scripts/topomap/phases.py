@@ -15,9 +15,10 @@ For large closed and perpendicular maps, where the counting argument of ``runs.l
 5. if the map is to be planar, the theory with planarity, on longer and longer beginnings of
    the exploration: brave consequences again.
 
-And where it does not apply, ``lines.lp``: which visits are of one place in any map, planar or
-not (brave consequences). It has few rules, and clasp is quick on it. If this is not settled
-in time, what was seen in no map yet is rare: the maps without it are looked for first.
+And where it does not apply, ``lines.lp``: which visits are of one place in any map (brave
+consequences). It has few rules, and clasp is quick on it. If the map is to be planar, clauses
+of ``plane.py`` join them as they are needed. If this is not settled in time, what was seen in
+no map yet is rare: the maps without it are looked for first.
 """
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -28,6 +29,7 @@ import clingo
 from clingo import Function, Number, Symbol
 
 from topomap.experience import Experience
+from topomap.plane import Planarity
 
 if TYPE_CHECKING:
     from topomap.solver import Query
@@ -101,7 +103,7 @@ def found(
             work.beginnings(experience)
     elif square:
         say("which runs lie on one path")
-        work.lines()
+        work.lines(Planarity(experience.slots) if "planar" in query.parts else None)
     return work.facts()
 
 
@@ -203,9 +205,14 @@ class _Phases:
                 self._know("out", *atom.arguments)
         return settled
 
-    def lines(self) -> None:
+    def lines(self, planarity: Planarity | None = None) -> None:
         # With another configuration it may be long before there is a first map at all.
-        control = self._grounded("phases/lines", arguments=[*BRAVE, "--configuration=handy"])
+        options = [*BRAVE, "--configuration=handy"]
+        if planarity:
+            options.append("--sat-prepro=no")  # it takes long, and the search then does not
+        control = self._grounded("phases/lines", arguments=options)
+        if planarity:
+            control.register_propagator(planarity)
         unseen, settled = self._unseen(control, TRY_HARD, ("same", 3), ("new", 1))
         for atom in unseen:
             if settled:
