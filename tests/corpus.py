@@ -136,6 +136,83 @@ WALKS = [
     of_grid(3, 3, "grid", (0, 1, 2), "SNWSEESWN"),
 ]
 
+# Walks of four slots, found by a search for those that kill mutants of lines.lp.
+RING = "w2 t0 t2 w0 t1 q3 q2 r0 r1 s3 s0 d2 d0 e2"
+SQUARES = [
+    # A circular path that could be taken for one that ends, as parts of the two look alike.
+    walked(4, RING, "w0", "2 1 3 2 0 1 2 1 0 2 0 0"),
+    walked(4, RING, "d2", "0 2 2 3 0 3 0 2 1 3 2"),
+    seen("0 2", "2: 0 3", "3: 0 3", "3: 0 2", "2: 0 3", "3: 0 3", "3: 0 2"),
+    seen("0", "0: 0 1 2 3", "3: 0", "0: 0 1 2 3", "3: 0", "0: 0 1 2 3", "3: 0 2", "2: 0"),
+    seen("0 2", "0: 0 1 2", "1: 0", "0: 0 1 3", "1: 0", "0: 0 2 3", "2: 0 2", "2: 0"),
+    marked(
+        seen(
+            "0 2 3",
+            "2: 0 2 3",
+            "2: 0 3",
+            "3: 0 3",
+            "3: 0 2 3",
+            "2: 0 2 3",
+            "2: 0 3",
+            "3: 0 3",
+            "3: 0 2 3",
+            "3: 0 1 3",
+            "1: 0 1 2",
+            "1: 0 1 3",
+        ),
+        0,
+        8,
+    ),
+    seen("0 2", "0: 0", "0: 0 2", "2: 0", "0: 0 2", "2: 0", "0: 0 2"),
+    seen(
+        "0 1 2 3",
+        "3: 0",
+        "0: 0 1 2 3",
+        "3: 0 1",
+        "1: 0",
+        "0: 0 3",
+        "3: 0 1 2 3",
+        "2: 0",
+        "0: 0 1 2 3",
+        "1: 0",
+    ),
+    seen("0 1", "0: 0 1", "1: 0", "0: 0 3", "3: 0 3", "0: 0", "0: 0"),
+    seen("0 2", "0: 0", "0: 0 2", "2: 0", "0: 0 2", "2: 0 2"),
+    seen("0", "0: 0 2", "0: 0 3", "3: 0", "0: 0 2", "2: 0 2"),
+    seen("0", "0: 0 1 2 3", "2: 0 1 2 3", "2: 0", "0: 0 1 2 3", "2: 0", "0: 0"),
+]
+# And with something found.
+PARTED = [
+    (
+        seen(
+            "0",
+            "0: 0 2",
+            "2: 0 3",
+            "3: 0",
+            "0: 0 1",
+            "1: 0",
+            "0: 0 3",
+            "3: 0 1 3",
+            "1: 0",
+            "0: 0 1 2",
+        ),
+        [
+            ("new", 0),
+            ("new", 1),
+            ("never", 3, 5, 1),
+            ("never", 3, 7, 0),
+            ("never", 3, 8, 0),
+            ("never", 3, 9, 0),
+            ("never", 4, 8, 0),
+            ("never", 6, 7, 1),
+        ],
+    ),
+    (
+        seen("0 2", "0: 0 3", "3: 0 3", "3: 0 1", "1: 0 2", "2: 0 2"),
+        [("never", 2, 3, 0), ("never", 2, 3, 1)],
+    ),
+]
+
 
 Answers = frozenset[tuple[tuple[int, ...], frozenset[str]]]
 
@@ -241,17 +318,29 @@ def phases() -> Iterator[Query]:
             yield left(facts, experience, truth, few, "planar")
             yield left(facts, experience, truth, many, "closed", "perpendicular")
             yield left(facts, experience, truth, news, "planar")
-        squares = truth.having("closed", "perpendicular")
         for found in founds * (experience.slots == 4):
-            of_pairs = [fact for fact in found if fact[0] in ("new", "never", "apart")]
-            maps = [at for at in squares if phased.so(of_pairs, experience, at)]
-            answers = phased.lines(experience, maps)
-            file = ("fast/phases/lines",)
-            yield Query(file, facts + phased.text(found), answers, ("--project",))
+            yield lines(facts, experience, truth, found)
             if (ways := phased.runs(experience, found)) is not None:
                 answers = frozenset(((), way) for way in ways)
                 file = ("fast/phases/runs",)
                 yield Query(file, facts + phased.text(found), answers, ("--project",))
+
+
+def lines(facts: str, experience: Experience, truth: Truth, found: list) -> Query:
+    """What is asked of closed and perpendicular maps where something was found."""
+    of_pairs = [fact for fact in found if fact[0] in ("new", "never", "apart")]
+    squares = truth.having("closed", "perpendicular")
+    maps = [at for at in squares if phased.so(of_pairs, experience, at)]
+    facts += phased.text(found)
+    return Query(("fast/phases/lines",), facts, phased.lines(experience, maps), ("--project",))
+
+
+def squares() -> Iterator[Query]:
+    """More of that."""
+    for experience, found in [*((seen, []) for seen in SQUARES), *PARTED]:
+        facts = experience.facts()
+        facts += "".join(f"{atom}. " for atom in phased.Pairs(experience).shown())
+        yield lines(facts, experience, Truth(experience), found)
 
 
 def left(facts: str, experience: Experience, truth: Truth, found: list, *parts: str) -> Query:
@@ -340,7 +429,7 @@ def faults() -> Iterator[Query]:
         yield Query(("input",), facts, shown(*(f"error({error})" for error in errors.split())))
 
 
-SUITES = (theory, phases, ends, check, demands, faults)
+SUITES = (theory, phases, squares, ends, check, demands, faults)
 
 
 @cache
