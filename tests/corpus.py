@@ -136,6 +136,97 @@ WALKS = [
     of_grid(3, 3, "grid", (0, 1, 2), "SNWSEESWN"),
 ]
 
+# Walks of four slots that kill mutants of lines.lp: made for it, and found by a search.
+RING = "w2 t0 t2 w0 t1 q3 q2 r0 r1 s3 s0 d2 d0 e2"
+TWO_GATES = "a1 p3 p1 t3 t1 f3 a2 e0 e1 z3 z0 p2 t2 x0"
+TWICE = "t1 m3 m1 n3 n1 u3 m0 k0 n0 l0"
+FORK = "g1 m3 m2 k0 k1 l3 l1 h3 h0 z2 z3 n1 n2 l0 n3 u1 u2 o0 o1 k3 m1 v3 g2 v2"
+SQUARES = [
+    # A circular path that could be taken for one that ends, as parts of the two look alike.
+    walked(4, RING, "w0", "2 1 3 2 0 1 2 1 0 2 0 0"),
+    walked(4, RING, "d2", "0 2 2 3 0 3 0 2 1 3 2"),
+    # A visit that could be of two places, each with a gateway which no other visit takes.
+    walked(4, TWO_GATES, "f3", "3 3 3 2 1 0"),
+    walked(4, TWO_GATES, "p2", "2 3 0 1 1 1"),
+    # Two paths that meet twice, one of them of runs that do not all touch; or both passed
+    # straight on at both places.
+    walked(4, TWICE + " t2 w0 w2 u2", "w2", "0 1 3 2 0 1 0 0 1 0 0 1 2 2 3"),
+    walked(4, TWICE + " t2 u2", "l0", "0 3 0 0 3 2 3 1 2 1"),
+    walked(4, TWICE + " t2 u2", "m1", "3 2 3 1 2 1 0 0 1 0"),
+    walked(4, "x1 t3 t1 u3 u1 y3 y2 c0 c3 d1 d0 u2 u0 t0 t2 w0", "x1", "1 1 1 2 3 0 0 2"),
+    # A triangle of paths, but of no three runs.
+    walked(4, "x1 m3 m1 z3 x2 y0 y1 z2 m0 k0", "m1", "3 2 1 3 0"),
+    # Two ways could begin at one gateway, and two more at another.
+    walked(4, FORK, "g2", "1 2 1 1 0 3 2 0 3 2 1 0 1"),
+    seen("0 2", "2: 0 3", "3: 0 3", "3: 0 2", "2: 0 3", "3: 0 3", "3: 0 2"),
+    seen("0", "0: 0 1 2 3", "3: 0", "0: 0 1 2 3", "3: 0", "0: 0 1 2 3", "3: 0 2", "2: 0"),
+    seen("0 2", "0: 0 1 2", "1: 0", "0: 0 1 3", "1: 0", "0: 0 2 3", "2: 0 2", "2: 0"),
+    marked(
+        seen(
+            "0 2 3",
+            "2: 0 2 3",
+            "2: 0 3",
+            "3: 0 3",
+            "3: 0 2 3",
+            "2: 0 2 3",
+            "2: 0 3",
+            "3: 0 3",
+            "3: 0 2 3",
+            "3: 0 1 3",
+            "1: 0 1 2",
+            "1: 0 1 3",
+        ),
+        0,
+        8,
+    ),
+    seen("0 2", "0: 0", "0: 0 2", "2: 0", "0: 0 2", "2: 0", "0: 0 2"),
+    seen(
+        "0 1 2 3",
+        "3: 0",
+        "0: 0 1 2 3",
+        "3: 0 1",
+        "1: 0",
+        "0: 0 3",
+        "3: 0 1 2 3",
+        "2: 0",
+        "0: 0 1 2 3",
+        "1: 0",
+    ),
+    seen("0 2", "0: 0 2", "0: 0 2", "2: 0", "0: 0 2", "2: 0 2", "2: 0", "0: 0 2", "2: 0 2"),
+    seen("0 1 2 3", "0: 0", "0: 0 1 2 3", "2: 0", "0: 0 1 2 3", "1: 0", "0: 0 1 2 3", "2: 0"),
+    seen("0 1 2 3", "2: 0", "0: 0 1 2 3", "1: 0", "0: 0 1 2 3", "2: 0", "0: 0 1 2 3", "3: 0"),
+    seen(
+        "0 1 2 3",
+        "2: 0 2",
+        "0: 0 1 2 3",
+        "1: 0",
+        "0: 0 1 2 3",
+        "2: 0",
+        "0: 0 1 2 3",
+        "3: 0",
+        "0: 0 1 2 3",
+        "2: 0 2",
+        "2: 0",
+    ),
+    seen(
+        "0 2 3",
+        "2: 0 3",
+        "3: 0 3",
+        "3: 0 2 3",
+        "2: 0 2 3",
+        "2: 0 3",
+        "3: 0 3",
+        "3: 0 2 3",
+        "2: 0 2 3",
+        "3: 0 1 3",
+        "3: 0 2 3",
+        "3: 0 1 3",
+    ),
+    seen("0 2", "2: 0 3", "3: 0 3", "3: 0 2", "0: 0 1", "0: 0 2", "2: 0 3", "3: 0 3", "3: 0 2"),
+    # What contradicts itself: the way back ends elsewhere.
+    seen("0", "0: 0 1", "1: 0", "0: 0"),
+]
+
 
 Answers = frozenset[tuple[tuple[int, ...], frozenset[str]]]
 
@@ -241,17 +332,29 @@ def phases() -> Iterator[Query]:
             yield left(facts, experience, truth, few, "planar")
             yield left(facts, experience, truth, many, "closed", "perpendicular")
             yield left(facts, experience, truth, news, "planar")
-        squares = truth.having("closed", "perpendicular")
         for found in founds * (experience.slots == 4):
-            of_pairs = [fact for fact in found if fact[0] in ("new", "never", "apart")]
-            maps = [at for at in squares if phased.so(of_pairs, experience, at)]
-            answers = phased.lines(experience, maps)
-            file = ("fast/phases/lines",)
-            yield Query(file, facts + phased.text(found), answers, ("--project",))
+            yield lines(facts, experience, truth, found)
             if (ways := phased.runs(experience, found)) is not None:
                 answers = frozenset(((), way) for way in ways)
                 file = ("fast/phases/runs",)
                 yield Query(file, facts + phased.text(found), answers, ("--project",))
+
+
+def lines(facts: str, experience: Experience, truth: Truth, found: list) -> Query:
+    """What is asked of closed and perpendicular maps where something was found."""
+    of_pairs = [fact for fact in found if fact[0] in ("new", "never", "apart")]
+    squares = truth.having("closed", "perpendicular")
+    maps = [at for at in squares if phased.so(of_pairs, experience, at)]
+    facts += phased.text(found)
+    return Query(("fast/phases/lines",), facts, phased.lines(experience, maps), ("--project",))
+
+
+def squares() -> Iterator[Query]:
+    """More of that."""
+    for experience in SQUARES:
+        facts = experience.facts()
+        facts += "".join(f"{atom}. " for atom in phased.Pairs(experience).shown())
+        yield lines(facts, experience, Truth(experience), [])
 
 
 def left(facts: str, experience: Experience, truth: Truth, found: list, *parts: str) -> Query:
@@ -340,7 +443,7 @@ def faults() -> Iterator[Query]:
         yield Query(("input",), facts, shown(*(f"error({error})" for error in errors.split())))
 
 
-SUITES = (theory, phases, ends, check, demands, faults)
+SUITES = (theory, phases, squares, ends, check, demands, faults)
 
 
 @cache

@@ -3,7 +3,19 @@
 import mutate
 import pytest
 from conftest import ENCODINGS
-from corpus import Query, check, demands, faults, phases, queries, shown, sizes, theory
+from corpus import (
+    Query,
+    check,
+    demands,
+    ends,
+    faults,
+    phases,
+    queries,
+    shown,
+    sizes,
+    squares,
+    theory,
+)
 
 RULES = """
 p(X) :- q(X,1), not r(X).
@@ -207,7 +219,14 @@ def test_an_encoding_that_gives_a_wrong_answer_unchanged_is_refused(mutated, mon
 
 @pytest.mark.parametrize(
     "suite",
-    [phases, demands, faults, *(pytest.param(s, marks=pytest.mark.long) for s in (theory, check))],
+    [
+        phases,
+        squares,
+        ends,
+        demands,
+        faults,
+        *(pytest.param(s, marks=pytest.mark.long) for s in (theory, check)),
+    ],
 )
 def test_the_encodings_answer_right(suite):
     """So nothing but its change kills a mutant."""
