@@ -245,6 +245,7 @@ def test_the_rows_are_those_of_the_table():
         "4x4 snake, any number of places, all maps": 920_024,
         "4x4 snake, any number of places, planar": 49_123,
         "5x5 snake, closed, planar, at most 25 places": 1_525,
+        "6x6 snake, closed, planar, at most 18 places": 212,
     }
 
 
