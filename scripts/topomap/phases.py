@@ -39,7 +39,7 @@ LEAST = 80  # steps: shorter explorations are as soon done in one call
 LEAST_BOUNDED = 40  # steps, the same for maps with a bound
 TRY = 20  # conflicts for a question whose answer may be left open
 IN_VAIN = 50  # such questions in a row: there is no more to be found
-TRY_BOUNDED = 50_000  # conflicts for all maps with a bound
+TRY_BOUNDED = 200_000  # conflicts for all maps with a bound
 TRY_HARD = 200_000  # conflicts for one beginning, or for all lines
 BRAVE = ("0", "--enum-mode=brave")
 STRIDE = 6  # steps, at least, from one beginning to the next
