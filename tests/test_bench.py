@@ -221,6 +221,20 @@ def test_the_picture_has_the_same_bytes_each_time(tmp_path):
     assert "exponent 3.0" in (tmp_path / "a.svg").read_text()
 
 
+def test_rows_are_measured_again_into_what_there_is(bench):
+    tasks = row(name="one", expected=6) + row(name="two")
+    done, _, _ = bench("--again", "one", tasks=tasks)
+    assert (done.returncode, done.stderr.count("\n")) == (2, 1)
+    _, first, _ = bench("--repeat", "1", tasks=tasks)
+    done, document, text = bench("--repeat", "1", "--again", "one", tasks=tasks, report=True)
+    assert "\n1 rows in " in done.stdout
+    assert [of["name"] for of in document["rows"]] == ["one", "two"]
+    assert document["rows"][1] == first["rows"][1]
+    assert document["rows"][0] != first["rows"][0]
+    assert [again["rows"] for again in document["again"]] == [["one"]]
+    assert ": one; and" in text
+
+
 def test_what_more_processes_gain_is_told_and_that_they_count_the_same(monkeypatch):
     monkeypatch.setattr(jobs, "TASKS", {"a task": ((3, 3), Query(frozenset(["planar"])))})
     (found,) = jobs.speedup(2)

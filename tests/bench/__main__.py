@@ -79,6 +79,7 @@ def parse(argv: list[str] | None) -> argparse.Namespace:
     add("--others", type=_number(float, 0.001), help="for the others (default: a third of that)")
     add("--memory", type=_number(int, 0), default=8192, help="MB for a run, 0: no limit")
     add("--only", metavar="PATTERN", help="rows whose name matches; no report")
+    add("--again", metavar="PATTERN", help="measure such rows, and --jobs, into what there is")
     add("--quick", action="store_true", help="the smallest rows, once; no report")
     add("--large", action="store_true", help="larger rows too")
     add("--maps", type=_number(int, 0), help=f"maps to a file, 0: none (default: {MAPS:,})")
@@ -111,7 +112,7 @@ def run(args: argparse.Namespace) -> int:
     """Measure what is asked, and write it down row by row."""
     try:
         of, everything = rows.read(args.rows)
-        pattern = re.compile(args.only or "")
+        pattern = re.compile(args.again or args.only or "")
     except (OSError, ValueError, TypeError, KeyError, AssertionError) as error:
         raise InputError(f"{args.rows}: {error!r}") from None
     chosen = [
@@ -123,7 +124,7 @@ def run(args: argparse.Namespace) -> int:
         raise InputError("no row has such a name")
     whole = not (args.only or args.quick) and args.rows == rows.ROWS
     file = args.json or str(ROOT / f"results/bench{'' if whole else '-selection'}.json")
-    maps = args.maps if args.maps is not None else MAPS * whole
+    maps = args.maps if args.maps is not None else MAPS * (whole and not args.again)
     docs = args.docs or (ROOT / "docs" if whole else None)
     with tempfile.TemporaryDirectory() as folder:
         try:
@@ -160,11 +161,19 @@ def run(args: argparse.Namespace) -> int:
             "growth": [],
             "memory": None,
             "jobs": [],
+            "again": [],
         }
+        if args.again:
+            new, document = document, _known(file)
+            again = [row.name for row in chosen]
+            about = {key: new[key] for key in ("machine", "versions")}
+            document["again"].append(about | {"rows": again})
         begun = time.monotonic()
         try:
             for row in measure.rows(chosen, plan, ways):
-                document["rows"].append(row)
+                names = [known["name"] for known in document["rows"]]
+                place = names.index(row["name"]) if row["name"] in names else len(names)
+                document["rows"][place : place + 1] = [row]
                 document["growth"] = growth.curves(document["rows"])
                 _write(document, file)
                 print(report.short(row), flush=True)
@@ -177,7 +186,8 @@ def run(args: argparse.Namespace) -> int:
             document["complete"] = True
         except KeyboardInterrupt:
             document["fault"] = "interrupted"
-        document["seconds"] = round(time.monotonic() - begun)
+        seconds = round(time.monotonic() - begun)
+        document["seconds"] = document.get("seconds", 0) + seconds
         _write(document, file)
     if document["fault"]:
         print(f"partial: {document['fault']}, {len(document['rows'])} of {len(chosen)} rows")
@@ -187,10 +197,21 @@ def run(args: argparse.Namespace) -> int:
         with output(str(docs / "benchmark.md"), parents=True) as out:
             out.write(report.text(document, "figures/scaling.svg"))
     wrong = [row for row in document["rows"] if row["verdict"].startswith("WRONG")]
-    print(f"{len(chosen)} rows in {document['seconds']} s, {len(wrong) or 'none'} wrong")
+    print(f"{len(chosen)} rows in {seconds} s, {len(wrong) or 'none'} wrong")
     grows = document["memory"] is not None and not document["memory"]["flat"]
     differ = not all(row["same"] for row in document["jobs"])
     return NO if wrong or grows or differ else DONE
+
+
+def _known(path: str) -> dict[str, Any]:
+    """What was measured before. Raises InputError if there is nothing of the kind."""
+    try:
+        document = json.loads(Path(path).read_text(encoding="utf-8"))
+        if document["complete"]:
+            return {"again": [], "jobs": [], **document}
+    except (OSError, ValueError, KeyError, TypeError):
+        pass
+    raise InputError(f"{path}: --again: not the figures of a whole run")
 
 
 def _write(document: dict[str, Any], path: str) -> None:

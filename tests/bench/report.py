@@ -227,6 +227,7 @@ def text(document: dict[str, Any], picture: str) -> str:
             2,
         ),
         how,
+        *map(_again, document["again"]),
         "## What the fast way takes\n",
         _results([row for row in rows if row["cut"] is None]),
         "## Beside a trial\n",
@@ -243,6 +244,15 @@ def text(document: dict[str, Any], picture: str) -> str:
         _sources(rows),
     ]
     return "\n".join(part for part in parts if part)
+
+
+def _again(made: dict[str, Any]) -> str:
+    """A later run for some rows."""
+    date, load = (made["machine"][key] for key in ("date", "load at the start"))
+    return (
+        f"Measured again on {date}, at a load of {load}, with topomap "
+        f"{made['versions']['topomap']}: {'; '.join(made['rows'])}; and what more processes gain.\n"
+    )
 
 
 def memory(found: dict[str, Any]) -> str:
