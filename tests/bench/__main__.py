@@ -167,7 +167,7 @@ def run(args: argparse.Namespace) -> int:
             new, document = document, _known(file)
             again = [row.name for row in chosen]
             about = {key: new[key] for key in ("machine", "versions")}
-            document["again"].append(about | {"rows": again})
+            document["again"].append(about | {"rows": again, "limit": plan.limit})
         begun = time.monotonic()
         try:
             for row in measure.rows(chosen, plan, ways):
