@@ -250,8 +250,9 @@ def _again(made: dict[str, Any]) -> str:
     """A later run for some rows."""
     date, load = (made["machine"][key] for key in ("date", "load at the start"))
     return (
-        f"Measured again on {date}, at a load of {load}, cut after {made['limit']:g} s, with topomap "
-        f"{made['versions']['topomap']}: {'; '.join(made['rows'])}; and what more processes gain.\n"
+        f"Measured again on {date}, at a load of {load}, cut after {made['limit']:g} s, "
+        f"with topomap {made['versions']['topomap']}: {'; '.join(made['rows'])}; and what more "
+        "processes gain.\n"
     )
 
 
