@@ -132,8 +132,19 @@ def interrupted(number, folder, *command):
 
 def test_an_interrupted_table_says_so(tmp_path):
     output = interrupted(signal.SIGINT, tmp_path, "table", "-o", tmp_path / "figure4.json")
-    assert re.search(r"^partial: \d of 6 columns$", output, re.MULTILINE)
+    assert re.search(r"^partial: interrupted; \d of 6 columns$", output, re.MULTILINE)
     assert not any(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize("beyond", [[], ["--beyond"]])
+def test_a_time_limit_ends_the_table(topomap, tmp_path, beyond):
+    file = tmp_path / "table.json"
+    file.write_text("old")
+    done = topomap("table", *beyond, "--timeout", "2", "--json", "-o", file)
+    answer = json.loads(done.stdout)
+    assert (done.returncode, answer["complete"], answer["fault"]) == (3, False, "timeout")
+    assert ("the same call with --resume goes on from here" in done.stderr) == bool(beyond)
+    assert file.read_text() == "old"
 
 
 def test_a_timeout_and_an_interrupt_end_the_phases(topomap, tmp_path):

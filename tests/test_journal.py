@@ -61,7 +61,11 @@ def cut_after(patch, units):
 def ordered(file):
     """A file's lines, maps in order and without their numbers: within a part of the tree
     clingo gives them in an order of its own."""
-    return sorted(re.sub(r"^map \d+|,$", "", line) for line in file.read_text().splitlines())
+    return ordered_text(file.read_text())
+
+
+def ordered_text(text):
+    return sorted(re.sub(r"^map \d+|,$", "", line) for line in text.splitlines())
 
 
 @pytest.mark.parametrize("name", [slow(name) for name in LONG_RUNS])
@@ -148,8 +152,13 @@ def test_without_resume_a_run_begins_anew(tmp_path, monkeypatch):
         (lambda text: text.replace('"facts and', '"other and'), "of another run"),
         (lambda text: "no journal\n" + text, "no journal of this program"),
         (lambda text: text.replace("[1, 1]", "[2, 1]", 1), "damaged after unit"),
-        (lambda text: text.replace("done 3", "done 4"), "damaged after unit"),
-        (lambda text: re.sub("(.*\ndone 2 .*\n)", "", text), "damaged after unit"),
+        (lambda text: text.replace("[1, 1]", "null", 1), "damaged after unit"),
+        (
+            lambda text: re.sub(r"\ndone (\w+)\n", r"\ndone 0\1\n", text, count=1),
+            "damaged after unit",
+        ),
+        (lambda text: re.sub(r"\n.*\ndone .*\n", "\n", text, count=1), "damaged after unit"),
+        (lambda text: text + text.splitlines()[-1] + "\n", "damaged after unit"),
     ],
 )
 def test_a_journal_that_is_torn_or_of_another_run(tmp_path, monkeypatch, capsys, change, fault):
@@ -166,6 +175,48 @@ def test_a_journal_that_is_torn_or_of_another_run(tmp_path, monkeypatch, capsys,
     else:
         assert status == 0
         assert file.read_text() == run("topomap", "count", PAPER).stdout
+
+
+LAST = r"(.*) \w+\n$"  # the line of a map of a part that was cut
+
+
+@pytest.mark.parametrize(
+    ("change", "fault"),
+    [
+        (lambda text: text, None),
+        (lambda text: text[:-3], None),
+        (lambda text: text + "[[0, 0], [1, ", None),
+        *(
+            (lambda text, line=line: text + line + "\n", "damaged after unit")
+            for line in (
+                "[[0,0],[1,0]]",
+                "[] 0",
+                "{}",
+                "null",
+                "null 00000000",
+                "3",
+                "junk",
+                "done",
+            )
+        ),
+        (lambda text: re.sub(LAST, r"\1\n", text), "damaged after unit"),
+        (lambda text: text[:-1] + "0\n", "damaged after unit"),
+        (lambda text: re.sub(r"\d+(\]\] \w+\n)$", r"7\1", text), "damaged after unit"),
+    ],
+)
+def test_the_part_that_was_cut_may_be_damaged_too(tmp_path, capsys, change, fault):
+    file, part = tmp_path / "maps.txt", tmp_path / "maps.txt.part"
+    assert main(["solve", PAPER, "--limit", "300", "-o", str(file)]) == 3
+    old = file.read_text()
+    part.write_text(changed := change(part.read_text()))
+    capsys.readouterr()
+    status = main(["solve", PAPER, "-o", str(file), "--resume"])
+    if fault:
+        assert (status, fault in capsys.readouterr().err) == (2, True)
+        assert (part.read_text(), file.read_text()) == (changed, old)
+    else:
+        assert status == 0
+        assert ordered(file) == ordered_text(run("topomap", "solve", PAPER).stdout)
 
 
 def test_other_queries_and_instances_are_other_runs(tmp_path, monkeypatch, capsys):

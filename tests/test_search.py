@@ -8,7 +8,7 @@ import pytest
 from conftest import COLUMNS, ROOT
 from oracle import Hypothesis as Slow
 from topomap import beyond, search
-from topomap.branching import branching, summary
+from topomap.branching import Summary, branching
 from topomap.environment import grid
 from topomap.experience import Experience, read
 from topomap.generate import instance
@@ -183,7 +183,11 @@ def planar_nodes(experience, places=None):
 @pytest.mark.parametrize("column", COLUMNS[1::2], ids=lambda c: c["environment"])
 def test_equation_1_on_the_papers_environments(column):
     experience = read(ROOT / f"instances/{column['instance']}.lp")
-    totals = summary(planar_nodes(experience, column["places"]))
+    summary = Summary()
+    for node in planar_nodes(experience, column["places"]):
+        summary.add(node)
+    totals = summary.totals
+    assert summary.holds
     assert totals["nodes"] == totals["f_is_m_plus_1"] == totals["worst_equal"] > 50
     assert totals["start_fits_and_equal"] == totals["start_fits"]
     assert totals["seen_equal"] < totals["seen_predicted"] <= totals["nodes"]

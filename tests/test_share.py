@@ -46,6 +46,13 @@ def local_cluster():
     )
 
 
+def test_nothing_is_said_of_the_processes():
+    for command in (["count"], ["solve"], ["solve", "--by", "search"]):
+        call = [BIN / "topomap", *command, GRID, "--jobs", "2"]
+        done = subprocess.run(call, capture_output=True, text=True)
+        assert (done.returncode, done.stderr) == (0, "")
+
+
 # What the crews are given to do
 
 

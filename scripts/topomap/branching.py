@@ -6,10 +6,9 @@ Measured: every child is built, and its genus counted anew. Children are counted
 path axiom and the bound; one of them is always the map with a new place.
 """
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from fractions import Fraction
-from itertools import groupby
 from typing import Any
 
 from topomap.hypothesis import Hypothesis
@@ -122,43 +121,56 @@ def _planar(node: Hypothesis, arrival: int) -> bool:
     return node.experience.map_of((*node.dstates, divmod(arrival, node.slots))).genus() == 0
 
 
-def summary(nodes: Iterable[BranchingNode]) -> dict[str, Any]:
-    """Totals, and totals by step (nodes come in the order of steps)."""
-    steps = {step: _totals(list(group)) for step, group in groupby(nodes, lambda n: n.step)}
-    whole = _totals([])
-    for totals in steps.values():
-        for key, value in totals.items():
-            merge = max if key.startswith("largest") else sum
-            whole[key] = merge((whole[key], value))
-    return {**whole, "steps": [{"step": step, **totals} for step, totals in steps.items()]}
+class Summary:
+    """Totals over branching nodes, by step and in all, taken in as they come.
+
+    ``worst_equal``: nodes at which the worst case is as predicted; ``seen_equal``: the same
+    under the views that are seen, by footnote 2, of those where it predicts anything
+    (``seen_predicted``); ``largest_difference`` there, and ``largest_gap`` to equation (1)
+    as it stands.
+    """
+
+    def __init__(self) -> None:
+        self.totals: dict[str, Any] = {**dict.fromkeys(FIGURES, 0), "steps": []}
+
+    def add(self, node: BranchingNode) -> None:
+        """Take in a node, of the same step as the last one or a later one."""
+        steps = self.totals["steps"]
+        if not steps or steps[-1]["step"] != node.step:
+            steps.append({"step": node.step, **dict.fromkeys(FIGURES, 0)})
+        for key, figure in FIGURES.items():
+            for totals in self.totals, steps[-1]:
+                totals[key] = (max if key in LARGEST else sum)((totals[key], figure(node)))
+
+    @property
+    def holds(self) -> bool:
+        """Whether f = m + 1, and equation (1) in the worst case, at every node."""
+        return bool(
+            self.totals["nodes"] == self.totals["f_is_m_plus_1"] == self.totals["worst_equal"]
+        )
 
 
-def _totals(nodes: list[BranchingNode]) -> dict[str, Any]:
-    """Sums over some nodes. ``worst_equal``: nodes at which the worst case is as predicted;
-    ``seen_equal``: the same under the views that are seen, by footnote 2, of those where it
-    predicts anything (``seen_predicted``); ``largest_difference`` there, and ``largest_gap``
-    to equation (1) as it stands."""
-    predicted = [abs(n.seen.difference) for n in nodes if n.seen.difference is not None]
-    return {
-        "nodes": len(nodes),
-        "f_is_m_plus_1": sum(n.faces_hold for n in nodes),
-        "matches": sum(n.matches for n in nodes),
-        "worst_b": sum(n.worst.b for n in nodes),
-        "worst_bp": sum(n.worst.bp for n in nodes),
-        "worst_equal": sum(n.worst.difference == 0 for n in nodes),
-        "seen_b": sum(n.seen.b for n in nodes),
-        "seen_bp": sum(n.seen.bp for n in nodes),
-        "seen_predicted": len(predicted),
-        "seen_equal": sum(n.seen.difference == 0 for n in nodes),
-        "start_fits": sum(n.start_fits for n in nodes),
-        "start_fits_and_equal": sum(n.start_fits and n.seen.difference == 0 for n in nodes),
-        "largest_difference": round(float(max(predicted, default=0)), 6),
-        "largest_gap": round(float(max((abs(n.gap) for n in nodes), default=0)), 6),
-    }
+FIGURES: dict[str, Callable[[BranchingNode], float]] = {
+    "nodes": lambda n: 1,
+    "f_is_m_plus_1": lambda n: n.faces_hold,
+    "matches": lambda n: n.matches,
+    "worst_b": lambda n: n.worst.b,
+    "worst_bp": lambda n: n.worst.bp,
+    "worst_equal": lambda n: n.worst.difference == 0,
+    "seen_b": lambda n: n.seen.b,
+    "seen_bp": lambda n: n.seen.bp,
+    "seen_predicted": lambda n: n.seen.difference is not None,
+    "seen_equal": lambda n: n.seen.difference == 0,
+    "start_fits": lambda n: n.start_fits,
+    "start_fits_and_equal": lambda n: n.start_fits and n.seen.difference == 0,
+    "largest_difference": lambda n: round(float(abs(n.seen.difference or 0)), 6),
+    "largest_gap": lambda n: round(float(abs(n.gap)), 6),
+}
+LARGEST = "largest_difference", "largest_gap"
 
 
 def text(totals: dict[str, Any]) -> str:
-    """A summary to read: by step, and of all."""
+    """The totals of a summary, to read: by step, and of all."""
     head = "step", "nodes", "m", "worst b", "bp", "bp/b", "seen b", "bp", "bp/b", "start fits"
     lines = [" ".join(word.rjust(9) for word in head)]
     for part in [*totals["steps"], totals]:

@@ -392,6 +392,9 @@ def _add_table(group: Any) -> None:
     )
     command.add_argument("--json", action="store_true", help="print JSON instead of the table")
     command.add_argument(
+        "--timeout", type=_number(float, 0.001), metavar="S", help="stop after S seconds"
+    )
+    command.add_argument(
         "-o",
         "--output",
         metavar="FILE",

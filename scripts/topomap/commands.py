@@ -23,11 +23,23 @@ from topomap.generate import Instance, instance
 from topomap.journal import Journal
 from topomap.report import Report
 from topomap.share import ALONE, Crew
-from topomap.solver import INTERRUPT, PARTS, Cube, Found, Query, Stopped, Watch, Way, best
+from topomap.solver import (
+    INTERRUPT,
+    MEMORY,
+    PARTS,
+    Cube,
+    Found,
+    Query,
+    Stopped,
+    Watch,
+    Way,
+    best,
+)
 from topomap.statistics import KEYS, Tally, tree
 from topomap.topology import TopologicalMap
 
 BEST_FIRST = "closed, best-first"
+STOPS = Stopped, MemoryError  # what leaves a partial answer
 
 
 def generate(args: argparse.Namespace) -> int:
@@ -148,8 +160,8 @@ def _solve_one(
                     break
                 else:
                     report.add(found)
-        except Stopped as stopped:
-            fault = str(stopped)
+        except STOPS as stop:
+            fault = str(stop) or MEMORY
         if fault and candidate and not report.count:
             report.add(candidate)
         report.end(fault)
@@ -275,8 +287,8 @@ def check(args: argparse.Namespace) -> int:
                     watch.found += 1
                     if len(checked) < number:
                         watch.tick()
-        except Stopped as stopped:
-            fault = f"{stopped}"
+        except STOPS as stop:
+            fault = str(stop) or MEMORY
         unsound = [verdict for verdict in checked if not verdict.sound]
         short = sum(verdict.short for verdict in checked)
         if args.json:
@@ -317,8 +329,8 @@ def count(args: argparse.Namespace) -> int:
         try:
             with Watch(args.timeout) as watch:
                 tree(experience, _query(args), watch, journal, figures, crew)
-        except Stopped as stopped:
-            fault = str(stopped)
+        except STOPS as stop:
+            fault = str(stop) or MEMORY
         _write_figures(args, out, figures, fault)
         journal.complete = not fault
     return _status(fault, bool(figures["final"]))
@@ -339,12 +351,13 @@ def search_tree(args: argparse.Namespace) -> int:
                 for _ in search.ORDERS[args.order](node, watch):
                     tally.add(node)
                     watch.found = tally.per_step[-1]
-        except Stopped as stopped:
-            fault = str(stopped)
+        except STOPS as stop:
+            fault = str(stop) or MEMORY
         figures = tally.figures()
         note = "; the figures are of the nodes searched until then"
-        if fault and args.order == "breadth":  # node is in the midst of its level
-            figures = dict.fromkeys(KEYS) | {"per_step": tally.per_step[: node.steps]}
+        if fault and args.order == "breadth":  # in the midst of the last level with a node
+            whole = sum(map(bool, tally.per_step)) - 1
+            figures = dict.fromkeys(KEYS) | {"per_step": tally.per_step[: max(0, whole)]}
             note = ""
         _write_figures(args, out, figures, fault, note)
     return _status(fault, bool(tally.per_step[-1]))
@@ -362,8 +375,8 @@ def _best_first(args: argparse.Namespace, experience: Experience, query: Query) 
                 if node.steps == node.experience.steps and node.closed():
                     report.add(Found(node.dstates, BEST_FIRST, node.cost, proved=False))
                     break
-        except Stopped as stopped:
-            fault = str(stopped)
+        except STOPS as stop:
+            fault = str(stop) or MEMORY
         report.end(fault, nodes=nodes)
     return _status(fault, bool(report.count))
 
@@ -393,27 +406,27 @@ def branching_nodes(args: argparse.Namespace) -> int:
     """Check the paper's equation (1) at every branching node of the planar tree."""
     experience = read(args.instance)
     query = _query(args).having("planar")
-    nodes: list[branching.BranchingNode] = []
+    summary = branching.Summary()
     fault = None
     with output(args.output) as out:
+        if args.json:
+            out.write(json.dumps({"instance": args.instance})[:-1] + ', "nodes": [')
         try:
             with Watch(args.timeout) as watch:
                 for node in branching.branching(search.root(experience, query), watch):
-                    nodes.append(node)
-        except Stopped as stopped:
-            fault = str(stopped)
-        totals = branching.summary(nodes)
+                    if args.json:
+                        out.write(",\n" * (watch.found > 1) + json.dumps(node.json()))
+                    summary.add(node)
+        except STOPS as stop:
+            fault = str(stop) or MEMORY
         if args.json:
-            tail = {"complete": not fault, "fault": fault}
-            answer = {"instance": args.instance, "summary": totals}
-            answer |= {"nodes": [node.json() for node in nodes], **tail}
-            out.write(json.dumps(answer) + "\n")
+            tail = {"summary": summary.totals, "complete": not fault, "fault": fault}
+            out.write("], " + json.dumps(tail)[1:] + "\n")
         else:
-            out.write(branching.text(totals))
+            out.write(branching.text(summary.totals))
             if fault:
                 out.write(f"partial: {fault}\n")
-    holds = all(node.faces_hold and node.worst.difference == 0 for node in nodes)
-    return _status(fault, holds)
+    return _status(fault, summary.holds)
 
 
 def table(args: argparse.Namespace) -> int:
@@ -421,50 +434,43 @@ def table(args: argparse.Namespace) -> int:
     name = "beyond" if args.beyond else "figure4"
     path = f"results/{name}.json" if args.output is None else args.output
     jobs = args.jobs or os.cpu_count() or 1
+    columns = len(beyond.COLUMNS if args.beyond else figure4.COLUMNS)
     rows: list[dict[str, Any]] = []
+    fault = None
     if args.resume and not args.beyond:
         raise InputError("topomap table: --resume goes with --beyond")
-    with output(path, parents=True) as file, contextlib.ExitStack() as stack:
-        if args.beyond:
-            columns = len(beyond.COLUMNS)
-            journal = stack.enter_context(
-                Journal(path, {"command": name, "columns": beyond.COLUMNS}, args.resume)
-            )
-            watch = stack.enter_context(Watch())
-            crew = stack.enter_context(share.crew(jobs))
-            counted = beyond.rows(crew, watch, journal)
-        else:
-            columns = len(figure4.COLUMNS)
-            counted = figure4.rows(jobs)
-        try:
+    try:
+        with output(path, parents=True) as file, contextlib.ExitStack() as stack:
+            if args.beyond:
+                run = {"command": name, "columns": beyond.COLUMNS}
+                journal = stack.enter_context(Journal(path, run, args.resume))
+                watch = stack.enter_context(Watch(args.timeout))
+                crew = stack.enter_context(share.crew(jobs))
+                counted = beyond.rows(crew, watch, journal)
+            else:
+                journal = Journal()
+                counted = figure4.rows(jobs, args.timeout)
             for row in counted:
                 rows = sorted([*rows, row], key=lambda row: (row["environment"], row["planarity"]))
                 say(f"counted {len(rows)} of {columns} columns")
-        except Stopped as stopped:  # the file keeps an older, complete table
-            _show_table(args, rows, columns)
-            raise (KeyboardInterrupt if str(stopped) == INTERRUPT else MemoryError) from None
-        json.dump({"complete": True, "rows": rows}, file, indent=1)
-        file.write("\n")
-        if args.beyond:
+            json.dump({"complete": True, "rows": rows}, file, indent=1)
+            file.write("\n")
             journal.complete = True
-    _show_table(args, rows, columns)
-    return NO if any(map(figure4.differences, rows)) else DONE
-
-
-def _show_table(args: argparse.Namespace, rows: list[dict[str, Any]], columns: int) -> None:
-    complete = len(rows) == columns
+    except STOPS as stop:  # the file keeps an older, complete table
+        fault = str(stop) or MEMORY
     different = [cell for row in rows for cell in figure4.differences(row)]
     if args.json:
-        print(json.dumps({"complete": complete, "rows": rows}))
-        return
+        print(json.dumps({"rows": rows, "complete": not fault, "fault": fault}))
+        return _status(fault, not different)
     if rows:
         print(figure4.text(rows))
     for cell in different:
         print(f"differs: {cell}")
-    if not complete:
-        print(f"partial: {len(rows)} of {columns} columns")
+    if fault:
+        print(f"partial: {fault}; {len(rows)} of {columns} columns")
     elif not different:
         print(beyond.VERDICT if args.beyond else "Every figure is the paper's.")
+    return _status(fault, not different)
 
 
 def family(args: argparse.Namespace) -> int:

@@ -43,10 +43,10 @@ def row(column: dict[str, Any], watch: Watch) -> dict[str, Any]:
     }
 
 
-def rows(jobs: int) -> Iterator[dict[str, Any]]:
+def rows(jobs: int, timeout: float | None = None) -> Iterator[dict[str, Any]]:
     """The rows of the table, each as soon as it is counted; the largest begin first.
-    Raises Stopped when interrupted."""
-    with ThreadPoolExecutor(jobs) as pool, Watch(quiet=True) as watch:
+    Raises Stopped past a time limit in seconds, and when interrupted."""
+    with ThreadPoolExecutor(jobs) as pool, Watch(timeout, quiet=True) as watch:
         pending = [pool.submit(row, column, watch) for column in reversed(COLUMNS)]
         for done in as_completed(pending):
             yield done.result()

@@ -13,11 +13,12 @@ from topomap import __version__
 from topomap.errors import InputError, of_file, say
 
 HEAD = b'{"topomap": '
-DONE = b"done "
+DONE = b"done"
 
 
 class Journal:
-    """A run in units: values are written, and a unit is done when it is committed.
+    """A run in units: values are written, and a unit is done when it is committed. Each
+    line ends with a checksum of all that the file holds so far.
 
     ``run`` says what is computed. With ``resume`` the journal of an earlier, equal run is
     gone on with after its last unit that was done; with ``cut_too`` the values of the unit
@@ -36,7 +37,7 @@ class Journal:
         self.path: Path | None = None
         self.complete = self._stopped = False
         self._cut_too, self._output = cut_too, output
-        self._end = self._units = self._sum = 0
+        self._end = self._units = self._sum = 0  # of what counts
         self._reader: BinaryIO | None = None
         head = json.dumps({"topomap": __version__, **(run or {})}) + "\n"
         if output is None or (Path(output).exists() and not Path(output).is_file()):
@@ -60,6 +61,7 @@ class Journal:
             if not self._end:
                 self._file.write(head.encode())
                 self._file.flush()
+                self._sum = zlib.crc32(head.encode())
             self._reader = self.path.open("rb")
             self._reader.readline()
         except BlockingIOError:
@@ -68,12 +70,12 @@ class Journal:
             if error.errno == ENAMETOOLONG and not resume:
                 self.path = None
                 return
-            raise of_file(self.path, error) from None
+            raise of_file(self.path if os.path.lexists(self.path) else output, error) from None
         except ValueError:
             raise InputError(f"{output}: not the name of a file") from None
 
     def _read(self, head: bytes) -> None:
-        """Find the end of what counts. A unit ends with its number and a checksum."""
+        """Find the end of what counts."""
         self._file.seek(0)
         first = self._file.readline()
         if not first.endswith(b"\n"):
@@ -81,24 +83,28 @@ class Journal:
         if first != head:
             raise InputError(f"{self.path}: of another run; without --resume it is begun anew")
         self._end = self._file.tell()
+        self._sum = total = zlib.crc32(first)
         for line in self._file:
             if not line.endswith(b"\n"):
                 return
-            if line.startswith(DONE):
-                if line != self._done():
-                    fault = f"damaged after unit {self._units}; without --resume it is begun anew"
-                    raise InputError(f"{self.path}: {fault}")
-                self._units += 1
-                self._sum = 0
-            else:
-                self._sum = zlib.crc32(line, self._sum)
-            if self._cut_too or line.startswith(DONE):
-                self._end = self._file.tell()
-        if not self._cut_too:
-            self._sum = 0
+            text, done = self._text(line)
+            total = zlib.crc32(text, total)
+            if line != self._line(text, total):
+                fault = f"damaged after unit {self._units}; without --resume it is begun anew"
+                raise InputError(f"{self.path}: {fault}")
+            self._units += done
+            if self._cut_too or done:
+                self._end, self._sum = self._file.tell(), total
 
-    def _done(self) -> bytes:
-        return DONE + b"%d %08x\n" % (self._units + 1, self._sum)
+    @staticmethod
+    def _line(text: bytes, total: int) -> bytes:
+        return b"%b %08x\n" % (text, total)
+
+    @staticmethod
+    def _text(line: bytes) -> tuple[bytes, bool]:
+        """What a line says, and whether it is the end of a unit."""
+        text = line.rpartition(b" ")[0]
+        return text, text == DONE
 
     @property
     def kept(self) -> bool:
@@ -109,10 +115,9 @@ class Journal:
         """The values of the next so many of the units that are done, and a None after each
         unit; then those of the unit that was cut, if there was one."""
         while units and self._reader and self._reader.tell() < self._end and not self._stopped:
-            line = self._reader.readline()
-            done = line.startswith(DONE)
+            text, done = self._text(self._reader.readline())
             units -= done
-            yield None if done else json.loads(line)
+            yield None if done else json.loads(text)
 
     def known(self, units: int) -> list[Any]:
         """The same of units of one value each."""
@@ -125,25 +130,23 @@ class Journal:
 
     def add(self, value: Any) -> None:
         """Note a value of the unit that is being worked on."""
-        line = json.dumps(value).encode() + b"\n"
-        self._sum = zlib.crc32(line, self._sum)
-        self._write(line)
+        self._write(json.dumps(value).encode())
 
     def commit(self) -> None:
         """Note that the unit is done."""
-        self._write(self._done(), flush=True)
+        self._write(DONE, flush=True)
         self._units += 1
-        self._sum = 0
 
     def stop(self) -> None:
         """Note nothing more: the next unit is not the one that would be next in a whole run."""
         self._stopped = True
 
-    def _write(self, line: bytes, flush: bool = False) -> None:
+    def _write(self, text: bytes, flush: bool = False) -> None:
         if self._reader is None or self._stopped:
             return
+        self._sum = zlib.crc32(text, self._sum)
         try:
-            self._file.write(line)
+            self._file.write(self._line(text, self._sum))
             if flush:
                 self._file.flush()
         except OSError as error:
@@ -159,7 +162,7 @@ class Journal:
             return
         if not self._units or (self.complete and kind is None):
             self.path.unlink()
-        elif kind is None:
+        elif kind is None or not issubclass(kind, InputError):
             say(f"{self._output}: partial; the same call with --resume goes on from here")
         self._file.close()
         self._reader.close()

@@ -47,6 +47,8 @@ Cube = tuple[DState, ...]  # the first dstates of a hypothesis
 INTERRUPT = "interrupted"
 MEMORY = "out of memory"
 SIGNALS = (signal.SIGINT, signal.SIGTERM)
+tqdm.monitor_interval = 0  # a thread that may never begin
+tqdm.set_lock(threading.RLock())  # the one of its own is for processes, which may leave it behind
 
 
 class Stopped(Exception):
@@ -111,7 +113,6 @@ class Watch:
         self._title = ""
         self.deadline = None if timeout is None else time.monotonic() + timeout
         interval = 0.2 if sys.stderr.isatty() else 10
-        tqdm.monitor_interval = 0  # a thread that may never begin
         self.bar = tqdm(
             unit=" maps", delay=2, mininterval=interval, miniters=0, leave=False, disable=quiet
         )
