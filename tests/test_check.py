@@ -105,6 +105,11 @@ def test_demands_that_a_document_makes_are_checked(topomap, maps):
         ("pending", lambda said: said.append([0, 0])),
         ("dstate", lambda said: said.reverse()),
         ("dstate", lambda said: said.append("a")),
+        ("dstate", lambda said: said.__setitem__(0, float(said[0]))),
+        ("places", lambda said: said[0].update(extra=1)),
+        ("places", lambda said: said[0].update(place=float(said[0]["place"]))),
+        ("places", lambda said: said[1]["gateways"].__setitem__(0, False)),
+        ("links", lambda said: said[0][0].__setitem__(1, float(said[0][0][1]))),
     ],
 )
 def test_what_else_a_map_says_is_verified(topomap, maps, key, change):
@@ -114,6 +119,15 @@ def test_what_else_a_map_says_is_verified(topomap, maps, key, change):
     done = topomap("check", GRID, maps)
     assert done.returncode == 1
     assert done.stdout == f"{maps}: map 2: {key}: not what at says\n3 maps, 1 unsound\n"
+
+
+@pytest.mark.parametrize("key", ["places", "links", "paths", "faces", "pending", "dstate", "genus"])
+@pytest.mark.parametrize("said", [{}, "", None, 1.0, [[]], [None], [{}]])
+def test_what_a_map_says_is_of_the_right_kind(topomap, maps, key, said):
+    document = json.loads(maps.read_text())
+    document["maps"][1][key] = said
+    maps.write_text(json.dumps(document))
+    assert f"map 2: {key}: not what at says\n" in topomap("check", GRID, maps).stdout
 
 
 def test_order_and_direction_do_not_matter(topomap, maps):
@@ -187,6 +201,14 @@ def test_the_real_map_is_verified(topomap, tmp_path):
         '{"maps": [{"at": []}], "parts": ["nonsense"]}',
         '{"maps": [{"at": []}], "count": true}',
         '{"maps": [{"at": []}], "colour": 1}',
+        '{"maps": [{"at": []}], "kind": "nonsense"}',
+        '{"maps": [{"at": []}], "kind": "consistent", "optimal": true}',
+        '{"maps": [{"at": []}], "kind": "optimal", "optimal": false}',
+        '{"maps": [{"at": []}], "nodes": -5}',
+        '{"maps": [{"at": []}], "complete": true, "fault": "limit"}',
+        '{"maps": [{"at": []}], "complete": false, "fault": null}',
+        '{"maps": [], "count": 3}',
+        json.dumps([{"at": [[0, 0, 0]] * 1000}]),
     ],
 )
 def test_what_is_no_document_of_maps_is_refused(topomap, tmp_path, text):

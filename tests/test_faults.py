@@ -14,7 +14,7 @@ import time
 from pathlib import Path
 
 import pytest
-from conftest import BIN, ROOT, run
+from conftest import BIN, COLUMNS, ROOT, run
 from corpus import CORRIDOR
 from topomap import solver
 
@@ -22,6 +22,7 @@ OLD = "old\n"
 QUIET = solver.Watch(quiet=True)
 GRID = ROOT / "instances/grid-3x3-snake.lp"
 PAPER = ROOT / "instances/grid-3x4-paper.lp"
+SNAKE = ROOT / "instances/grid-4x4-snake.lp"
 LARGE = ROOT / "instances/manhattan-tour40-signs30.lp"
 COMMANDS = {
     "generate": "generate grid 60 60 --route snake -o out",
@@ -320,6 +321,24 @@ def test_want_of_memory(tmp_path, extra, record_property):
         assert answer["per_step"][:3] == [1, 1, 1][: len(answer["per_step"])]
         failed += 2 + (answer["fault"] != "timeout")
     record_property("runs out of memory", failed)
+
+
+@pytest.mark.parametrize(
+    "call", [f"search {SNAKE} --bound 16", f"search {LARGE} --order best", f"branching {SNAKE}"]
+)
+def test_want_of_memory_of_a_search(tmp_path, call):
+    """What it has counted until then is written."""
+    out = tmp_path / "out"
+    status, _, told = confined((least_memory() + 12) * 1024, *call.split(), "--json", "-o", out)
+    assert (status, "Traceback" in told) == (3, False)
+    answer = json.loads(out.read_text())
+    assert (answer["complete"], answer["fault"]) == (False, "out of memory")
+    if "per_step" in answer:
+        steps = answer["per_step"]
+        assert steps == COLUMNS[4]["expected"]["per_step"][: len(steps)]
+        assert len(steps) > 8
+    if "summary" in answer:
+        assert len(answer["nodes"]) == answer["summary"]["nodes"] > 100
 
 
 def test_want_of_memory_elsewhere(tmp_path):

@@ -133,8 +133,16 @@ def test_a_line_of_100_megabytes(tmp_path, piece, command):
 
 
 @pytest.mark.parametrize("file", ["/dev/zero", "/dev/null"])
-def test_devices_as_input(tmp_path, file):
-    assert refusal(tmp_path, "solve", file).startswith(f"{file}: ")
+@pytest.mark.parametrize("call", [["solve"], ["check", GRID], ["solve", GRID, "--truth"]])
+def test_devices_as_input(tmp_path, file, call):
+    assert refusal(tmp_path, *call, file).startswith(f"{file}: ")
+
+
+def test_a_real_map_of_100_megabytes(tmp_path):
+    file = tmp_path / "long"
+    file.write_text('{"maps": [{"at": [' + ", ".join(["[0, 0, 0]"] * 10**7) + "]}]}")
+    line = refusal(tmp_path, "solve", GRID, "--truth", file)
+    assert line == f"{file}: larger than 32 MiB\n"
 
 
 @pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16", "utf-16-le", "utf-16-be"])

@@ -333,7 +333,8 @@ def _add_check(group: Any) -> None:
         "maps",
         metavar="MAPS.json",
         help="from topomap solve --json or clingo --outf=2; a map needs at, [[T,P,S], ...], "
-        "and what else it has is verified",
+        "and what else it has is verified; of all the maps are verified the parts, bound, "
+        "horizon, kind, cost and count, not whether they are all that there are",
     )
     command.add_argument(
         "--truth", metavar="FILE", help="the real map (from generate --truth), for the key real"

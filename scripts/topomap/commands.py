@@ -18,7 +18,7 @@ from topomap.check import STEP_RULES, by_definition
 from topomap.errors import DONE, INTERRUPTED, NO, PARTIAL, InputError, say
 from topomap.experience import LARGEST, Experience, read
 from topomap.family import expand
-from topomap.files import output, text
+from topomap.files import MOST_BYTES, output, text
 from topomap.generate import Instance, instance
 from topomap.journal import Journal
 from topomap.report import Report
@@ -252,8 +252,10 @@ def _crew(args: argparse.Namespace) -> Crew:
 
 def _truth(file: str, experience: Experience, horizon: int | None) -> TopologicalMap:
     """The real map of an experience, from a file that ``generate --truth`` wrote."""
-    entry = maps.read(file)[0].maps[:1]
-    at = [(step, place, slot) for step, place, slot in entry[0]["at"]] if entry else []
+    entries = [entry for document in maps.read(file, MOST_BYTES) for entry in document.maps]
+    if len(entries) != 1:
+        raise InputError(f"{file}: {len(entries)} maps; the real map is one")
+    at = [(step, place, slot) for step, place, slot in entries[0]["at"]]
     if len(at) != experience.steps + 1:
         raise InputError(f"{file}: {len(at) - 1} steps, the instance has {experience.steps}")
     wrong = [(step, rule) for rule, step in by_definition(experience, at) if rule in STEP_RULES]

@@ -8,7 +8,6 @@ import sys
 import tempfile
 from collections.abc import Iterator
 from errno import EISDIR, ELOOP
-from itertools import islice
 from pathlib import Path
 from typing import IO
 
@@ -19,28 +18,34 @@ _CHUNK = 2**20
 _TEMPORARY = ".topomap-"
 
 
-def data(path: str | Path, most: int = MOST_BYTES) -> bytes:
-    """The bytes of a file, ``most`` at most. Raises InputError where it cannot be read."""
+def data(path: str | Path) -> bytes:
+    """The bytes of a file. Raises InputError where it cannot be read."""
+    return bytes(_content(path, MOST_BYTES))
+
+
+def text(path: str | Path, most: int = MOST_BYTES) -> str:
+    """The text of a file of ``most`` bytes at most. Raises InputError where there is none."""
+    try:
+        return _content(path, most, b"\0").decode("utf-8-sig")
+    except UnicodeDecodeError:
+        raise InputError(f"{path}: not a text file") from None
+
+
+def _content(path: str | Path, most: int, forbidden: bytes | None = None) -> bytearray:
+    """What is in a file, read until it is too much or no text."""
+    content = bytearray()
     try:
         with Path("/dev/stdin" if str(path) == "-" else path).open("rb") as file:
-            content = b"".join(islice(iter(lambda: file.read(_CHUNK), b""), most // _CHUNK + 1))
+            while chunk := file.read(_CHUNK):
+                content += chunk
+                if len(content) > most:
+                    raise InputError(f"{path}: larger than {most >> 20} MiB")
+                if forbidden and forbidden in chunk:
+                    raise InputError(f"{path}: not a text file")
     except OSError as error:
         raise of_file(path, error) from None
     except ValueError:
         raise InputError(f"{path}: not the name of a file") from None
-    if len(content) > most:
-        raise InputError(f"{path}: larger than {most >> 20} MiB")
-    return content
-
-
-def text(path: str | Path, most: int = MOST_BYTES) -> str:
-    """The text of a file. Raises InputError where there is none."""
-    try:
-        content = data(path, most).decode("utf-8-sig")
-    except UnicodeDecodeError:
-        raise InputError(f"{path}: not a text file") from None
-    if "\0" in content:
-        raise InputError(f"{path}: not a text file")
     return content
 
 

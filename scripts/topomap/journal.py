@@ -70,7 +70,8 @@ class Journal:
             if error.errno == ENAMETOOLONG and not resume:
                 self.path = None
                 return
-            raise of_file(self.path if os.path.lexists(self.path) else output, error) from None
+            named = self.path if self.path and os.path.lexists(self.path) else output
+            raise of_file(named, error) from None
         except ValueError:
             raise InputError(f"{output}: not the name of a file") from None
 

@@ -18,7 +18,10 @@ from topomap.solver import PARTS
 from topomap.topology import Gateway, TopologicalMap
 
 MOST_BYTES = 2**32
+LONGER = 10  # times as many dstates as steps: no map of the experience
 _AT = re.compile(r"at\((-?\d+),(-?\d+),(-?\d+)\)", re.ASCII)
+KINDS = ("consistent", "best", "optimal", "best so far", "closed, best-first")
+BEST = ("optimal", "best so far")  # what --optimal gives
 DEMANDS = ("planar", "closed", "travelled", "boundary", "perpendicular")
 
 
@@ -39,16 +42,17 @@ class Document:
                 yield part
         if self.claims.get("bound") is not None:
             yield f"bound({self.claims['bound']})"
-        if self.claims.get("kind") in ("optimal", "best so far"):
+        if self.claims.get("kind") in BEST:
             yield "boundary"
         if self.claims.get("kind") in ("optimal", "closed, best-first"):
             yield "closed"
 
 
-def read(path: str) -> list[Document]:
-    """The maps in a file. Raises InputError, one line, where it holds something else."""
+def read(path: str, most: int = MOST_BYTES) -> list[Document]:
+    """The maps in a file of ``most`` bytes at most. Raises InputError, one line, where it
+    holds something else."""
     try:
-        data = json.loads(text(path, MOST_BYTES))
+        data = json.loads(text(path, most))
     except (ValueError, RecursionError):
         raise InputError(
             f"{path}: not a JSON text, as topomap solve --json and clingo --outf=2 write it"
@@ -78,6 +82,12 @@ def _document(where: str, data: Any) -> Document:
             raise InputError(f"{where}: {key}: no such key")
         if not CLAIMS[key](value):
             raise InputError(f"{where}: {key}: not what topomap solve --json writes there")
+    if "fault" in claims and claims.get("complete") is not (claims["fault"] is None):
+        raise InputError(f"{where}: complete and fault contradict each other")
+    if "kind" in claims and claims.get("optimal", False) is not (claims["kind"] in BEST):
+        raise InputError(f"{where}: optimal and kind contradict each other")
+    if not data["maps"] and claims.get("count"):
+        raise InputError(f"{where}: count is {claims['count']}, there are no maps")
     for number, entry in enumerate(data["maps"], 1):
         if not isinstance(entry, dict) or not _is_at(entry.get("at")):
             raise InputError(f"{where}: map {number}: at is not a list [[T,P,S], ...] of numbers")
@@ -110,11 +120,11 @@ CLAIMS: dict[str, Callable[[Any], bool]] = {
     "bound": _is_number_or_none,
     "horizon": _is_number_or_none,
     "optimal": _is_truth,
-    "kind": _is_text,
+    "kind": lambda kind: kind is None or kind in KINDS,
     "count": _is_number,
     "cost": _is_list_of(_is_number),
     "proved": _is_truth,
-    "nodes": _is_number,
+    "nodes": lambda value: _is_number(value) and value > 0,
     "complete": _is_truth,
     "fault": _is_text,
 }
@@ -165,7 +175,13 @@ def verdicts(
     demands: Sequence[str],
     truth: TopologicalMap | None,
 ) -> Iterator[Verdict]:
-    """A verdict on each map, by ``check.lp`` and by definition."""
+    """A verdict on each map, by ``check.lp`` and by definition. Raises InputError if one is
+    much longer than the experience."""
+    for document in documents:
+        for number, entry in enumerate(document.maps, 1):
+            if len(entry["at"]) > LONGER * (experience.steps + 1):
+                fault = f"at has {len(entry['at'])} dstates, the instance {experience.steps + 1}"
+                raise InputError(f"{document.where}: map {number}: {fault}")
     for document in documents:
         wanted = sorted({*demands, *document.demands()})
         numbers: dict[At, int] = {}
@@ -224,24 +240,30 @@ def faults(
 def _cost(grown: Grown, claims: dict[str, Any]) -> list[int]:
     """What was minimised, most important first."""
     parts = claims.get("parts", ())
-    minimal = "minimal" in parts or claims.get("kind") in (
-        "optimal",
-        "best so far",
-        "closed, best-first",
-    )
+    minimal = "minimal" in parts or claims.get("kind") in (*BEST, "closed, best-first")
     genus = [grown.genus()] if "genus" in parts else []
     return genus + ([len(grown.paths()), len(grown.stars)] if minimal else [])
 
 
 def _places(grown: Grown, experience: Experience, said: Any) -> bool:
-    return sorted((p["place"], p["gateways"], p["landmarks"]) for p in said) == [
-        (place, star, sorted(experience.landmarks[place])) for place, star in grown.stars.items()
+    def in_order(places: Any) -> list[dict[str, Any]]:
+        numbers = (number for place in places for number in (place["place"], *place["gateways"]))
+        if not all(map(_is_number, numbers)):
+            raise ValueError
+        lists = ("gateways", "landmarks")
+        ordered = [{**place, **{key: sorted(place[key]) for key in lists}} for place in places]
+        return sorted(ordered, key=lambda place: int(place["place"]))
+
+    ours = [
+        {"place": place, "gateways": star, "landmarks": list(experience.landmarks[place])}
+        for place, star in grown.stars.items()
     ]
+    return in_order(_list(said)) == in_order(ours)
 
 
 def _links(grown: Grown, _: Experience, said: Any) -> bool:
     ours = {tuple(sorted(link)) for link in grown.links.items()}
-    return sorted(tuple(sorted(map(_gateway, link))) for link in said) == sorted(ours)
+    return sorted(tuple(sorted(_gateways(link))) for link in _list(said)) == sorted(ours)
 
 
 def _paths(grown: Grown, _: Experience, said: Any) -> bool:
@@ -249,7 +271,7 @@ def _paths(grown: Grown, _: Experience, said: Any) -> bool:
         return min(path, [grown.opposite(heading) for heading in reversed(path)])
 
     ours = sorted(map(one_way, grown.paths()))
-    return sorted(one_way(list(map(_gateway, path))) for path in said) == ours
+    return sorted(one_way(_gateways(path)) for path in _list(said)) == ours
 
 
 def _faces(grown: Grown, _: Experience, said: Any) -> bool:
@@ -258,11 +280,23 @@ def _faces(grown: Grown, _: Experience, said: Any) -> bool:
         return face[start:] + face[:start]
 
     ours = sorted(map(from_least, grown.faces()))
-    return sorted(from_least(list(map(_gateway, face))) for face in said) == ours
+    return sorted(from_least(_gateways(face)) for face in _list(said)) == ours
+
+
+def _list(said: Any) -> list[Any]:
+    if not isinstance(said, list):
+        raise ValueError
+    return said
+
+
+def _gateways(said: Any) -> list[Gateway]:
+    return [_gateway(gateway) for gateway in _list(said)]
 
 
 def _gateway(said: Any) -> Gateway:
-    place, slot = said
+    place, slot = _list(said)
+    if not (_is_number(place) and _is_number(slot)):
+        raise ValueError
     return place, slot
 
 
@@ -272,6 +306,6 @@ KEYS: dict[str, Callable[[Grown, Experience, Any], bool]] = {
     "paths": _paths,
     "faces": _faces,
     "genus": lambda grown, _, said: _is_number(said) and grown.genus() == said,
-    "pending": lambda grown, _, said: sorted(map(_gateway, said)) == sorted(grown.pending()),
+    "pending": lambda grown, _, said: sorted(_gateways(said)) == sorted(grown.pending()),
     "dstate": lambda grown, _, said: _gateway(said) == grown.dstate,
 }
