@@ -47,7 +47,7 @@ test: $(SETUP)
 	$(BIN)/pytest -n $(JOBS) -m 'not long'
 
 test-long: $(SETUP)
-	$(BIN)/pytest -n $(JOBS)
+	$(BIN)/pytest -n $(JOBS) --tried results/tried.json
 
 mutate: $(SETUP)
 	$(BIN)/python tests/mutate.py --jobs $(JOBS) --known build/mutants.txt

@@ -12,6 +12,7 @@ import clingo
 import hypothesis  # noqa: F401 -- else at the end, beside threads: Python 3.11 has a fault there
 import pytest
 from oracle import Hypothesis, best, tree
+from topomap.files import output
 from topomap.solver import FORMS, OPTIMIZING
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -22,7 +23,12 @@ SHARED = ROOT.parent / "shared" / "maps"
 BIN = Path(sys.executable).parent
 # Under nohup, or in the background of a shell, SIGINT is ignored, and by all that is started.
 signal.signal(signal.SIGINT, signal.default_int_handler)
+ENDS = "passed", "failed", "error", "skipped"
 TRIED = Counter()  # what was tried how often, for the last lines of a test run
+
+
+def pytest_addoption(parser):
+    parser.addoption("--tried", metavar="FILE", help="write there what was tried how often")
 
 
 def pytest_sessionfinish(session):
@@ -44,6 +50,11 @@ def pytest_terminal_summary(terminalreporter):
             TRIED[what] += number
     for what, number in sorted(TRIED.items()):
         terminalreporter.write_line(f"tried: {number:,} {what}")
+    if file := terminalreporter.config.getoption("tried"):
+        with output(file, parents=True) as out:
+            numbers = {end: len(terminalreporter.stats.get(end, ())) for end in ENDS}
+            json.dump({**numbers, "tried": dict(sorted(TRIED.items()))}, out, indent=1)
+            out.write("\n")
 
 
 def answers(parts, facts, *arguments, encoding="plain"):

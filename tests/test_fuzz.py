@@ -1,12 +1,13 @@
-"""Random bad input to every reader: instances, true maps, networks, families, routes and
-command lines. Each is refused in one line with status 2, or answered; nothing hangs, shows a
-traceback or leaves a part of a file.
+"""Random bad input to every reader: instances, maps, true maps, networks, families, journals,
+routes and command lines. Each is refused in one line with status 2, or answered; nothing hangs,
+shows a traceback or leaves a part of a file.
 
 A new reader is a line in READERS; a new subcommand is found by itself.
 """
 
 import argparse
 import contextlib
+import functools
 import io
 import json
 import random
@@ -14,6 +15,8 @@ import re
 import shlex
 import signal
 import string
+import tempfile
+from pathlib import Path
 
 import networkx as nx
 import pytest
@@ -98,6 +101,8 @@ def made(draw, kind):
         return json.dumps({"maps": [{"at": [[t, *dstate] for t, dstate in enumerate(at)]}]})
     if kind == "network":
         return network(draw)
+    if kind == "journal":
+        return journal()
     return draw.choice(
         [
             "# grids\ngrid {2..3} 2 --route {snake,E}  # two by two\n",
@@ -121,6 +126,16 @@ def maps(draw):
     return draw.choice([out.getvalue(), json.dumps(clingo)])
 
 
+@functools.cache
+def journal():
+    """What a run leaves that was cut in the midst of a part."""
+    with tempfile.TemporaryDirectory() as folder, contextlib.redirect_stderr(io.StringIO()):
+        file, snake = Path(folder) / "maps", Path(folder) / "three.lp"
+        snake.write_text(THREE)
+        assert cli.main(["solve", str(snake), "--limit", "60", "-o", str(file)]) == 3
+        return Path(f"{file}.part").read_text()
+
+
 def network(draw):
     graph = draw.choice([nx.Graph, nx.MultiDiGraph])(crs="epsg:32618")
     for name, east, north in (("a", 0, 0), ("b", 0, 9), ("c", 9, 9), ("d", 9, 0)):
@@ -131,6 +146,7 @@ def network(draw):
 
 EDITS = on_bytes, on_tokens, on_lines
 GRID = instance(grid(2, 2), "snake").text()
+THREE = instance(grid(3, 3), "snake").text()
 READERS = {  # the calls that read a file, and how to spoil it
     "instance": (
         [
@@ -159,6 +175,7 @@ READERS = {  # the calls that read a file, and how to spoil it
         EDITS,
     ),
     "family": (["family FILE -d folder"], EDITS),
+    "journal": (["solve three.lp --resume -o maps"], EDITS),
 }
 
 
@@ -174,6 +191,7 @@ def feed(tmp_path, monkeypatch):
     monkeypatch.setattr(figure4, "COLUMNS", figure4.COLUMNS[:1])
     monkeypatch.setattr(beyond, "COLUMNS", [(2, 3, None, True)])
     (tmp_path / "good.lp").write_text(GRID)
+    (tmp_path / "three.lp").write_text(THREE)
     (tmp_path / "net.graphml").write_text(network(random.Random(0)))
     (tmp_path / "bad.lp").write_text("slots(5).")
     (tmp_path / "dir").mkdir()
@@ -220,7 +238,7 @@ def feed(tmp_path, monkeypatch):
         assert fault is None, f"{fault}\ncd {tmp_path} && topomap {shlex.join(arguments)}"
         return status
 
-    kept = {*files(), tmp_path / "FILE"}
+    kept = {*files(), tmp_path / "FILE", tmp_path / "maps.part"}
     return run
 
 
@@ -234,8 +252,10 @@ def test_spoilt_files(feed, tmp_path, cases, record_property):
         draw = random.Random(f"file {cases} {number}")
         kind = draw.choice(list(READERS))
         calls, edits = READERS[kind]
-        (tmp_path / "FILE").write_bytes(draw.choice(edits)(draw, made(draw, kind)))
-        refused[kind] += feed(draw.choice(calls).split(), "FILE") == 2
+        file = tmp_path / ("maps.part" if kind == "journal" else "FILE")
+        file.write_bytes(draw.choice(edits)(draw, made(draw, kind)))
+        refused[kind] += feed(draw.choice(calls).split(), file.name) == 2
+        file.unlink(missing_ok=True)
     assert min(refused.values()) > cases / len(READERS) / 4, refused
     record_property("bad files refused", sum(refused.values()))
 

@@ -54,5 +54,32 @@ def test_the_readme_shows_the_committed_reports():
     assert f"; {larger} of `fast/` only" in text
 
 
+def test_the_readme_says_how_often_what_was_tried():
+    """As the last whole run of the tests that was committed has it (make test-long)."""
+    run = json.loads((ROOT / "docs/tried.json").read_text())
+    number = {what: f"{times:,}" for what, times in run["tried"].items()}
+    queries = number["queries on which ways to an answer were compared"]
+    bad = " + ".join(number[f"bad {what} refused"] for what in ("files", "routes", "command lines"))
+    wrong = number["maps with errors judged by both checkers"]
+    rows = [
+        f"{number['random experiences']} random experiences, {queries} queries",
+        f"{number['maps judged by both checkers']} maps; {wrong} with errors",
+        bad,
+        f"{number['strikes']} strikes",
+        f"{number['cuts of long runs, resumed']} cuts",
+    ]
+    assert (run["failed"], run["error"]) == (0, 0)
+    for row in rows:
+        assert f"| {row} |" in README.read_text()
+
+
+def test_the_readme_says_how_much_memory_was_taken():
+    maps, tenths = re.search(
+        r"solve --output` of (\S+) maps .*: ([\d, ]+)\.", (ROOT / "docs/benchmark.md").read_text()
+    ).groups()
+    most = max(map(int, tenths.split(", ")))
+    assert f"| {maps} maps | {most} MB throughout | `make bench`," in README.read_text()
+
+
 def test_the_readme_has_commands():
     assert len(CALLS) > 10

@@ -120,7 +120,7 @@ def _point(file: str | Path, graph: "nx.Graph[Any]", place: Place) -> Point:
                 point = math.nan, math.nan
             if all(abs(number) <= LARGEST for number in point):
                 return point
-    raise InputError(f"{file}: place {place} has no coordinates (x, y or lon, lat)")
+    raise InputError(f"{file}: place {place} has no coordinates (numbers x, y or lon, lat)")
 
 
 def _unprojected(graph: "nx.Graph[Any]", points: dict[Place, Point]) -> bool:

@@ -24,7 +24,7 @@ from topomap.files import output
 from bench import growth, jobs, measure, memory, report, rows
 from bench.rows import ROOT, WAYS
 
-MAPS = 200_000
+MAPS = 1_000_000
 
 
 def machine() -> dict[str, str]:
