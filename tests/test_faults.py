@@ -9,6 +9,7 @@ import shlex
 import shutil
 import signal
 import subprocess
+import sys
 import threading
 import time
 from pathlib import Path
@@ -127,6 +128,27 @@ def test_strikes_at_the_table(tmp_path, record_property):
     hits = strikes("table", "table -o out", tmp_path, range(10), again=0.1)
     assert hits > 4
     record_property("strikes", hits)
+
+
+def test_an_interrupt_where_none_can_be_raised_comes_again():
+    program = """if True:
+        import time
+        from topomap import __main__, cli
+
+        class Late:
+            def __del__(self):
+                raise KeyboardInterrupt
+
+        def main():
+            Late()
+            for _ in range(500):
+                time.sleep(0.01)
+            return 0
+
+        cli.main = main
+        __main__.run()"""
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
+    assert (done.returncode, done.stdout, done.stderr) == (130, "", "interrupted\n")
 
 
 def test_a_killed_writer_leaves_a_file_that_the_next_one_removes(tmp_path):

@@ -22,7 +22,7 @@ def run() -> None:
         status = main()
     except KeyboardInterrupt:
         _stop()
-    for number in both:
+    for number in (*both, signal.SIGALRM):
         signal.signal(number, signal.SIG_IGN)
     with contextlib.suppress(OSError):
         sys.stdout.flush()
@@ -39,8 +39,12 @@ def _stop(*_: object) -> None:
 
 
 def _note(ignored: "sys.UnraisableHookArgs") -> None:
-    """Where memory is short, a generator cannot even be closed; the answer says so once."""
-    if not issubclass(ignored.exc_type, MemoryError):
+    """Where memory is short, a generator cannot even be closed; the answer says so once. An
+    interrupt that came just where none can be raised comes again, a moment later."""
+    if issubclass(ignored.exc_type, KeyboardInterrupt):
+        signal.signal(signal.SIGALRM, signal.default_int_handler)
+        signal.setitimer(signal.ITIMER_REAL, 0.01)
+    elif not issubclass(ignored.exc_type, MemoryError):
         sys.__unraisablehook__(ignored)
 
 
