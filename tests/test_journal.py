@@ -201,6 +201,8 @@ LAST = r"(.*) \w+\n$"  # the line of a map of a part that was cut
         ),
         (lambda text: re.sub(LAST, r"\1\n", text), "damaged after unit"),
         (lambda text: text[:-1] + "0\n", "damaged after unit"),
+        (lambda text: re.sub(r"\]\] \w+\ndone", "]]done", text, count=1), "damaged after unit"),
+        (lambda text: re.sub(r"\]\] \w+\n\[\[", "]][[", text, count=1), "damaged after unit"),
         (lambda text: re.sub(r"\d+(\]\] \w+\n)$", r"7\1", text), "damaged after unit"),
     ],
 )

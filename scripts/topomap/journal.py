@@ -89,13 +89,18 @@ class Journal:
             if not line.endswith(b"\n"):
                 return
             text, done = self._text(line)
-            total = zlib.crc32(text, total)
+            total = self._added(text, total)
             if line != self._line(text, total):
                 fault = f"damaged after unit {self._units}; without --resume it is begun anew"
                 raise InputError(f"{self.path}: {fault}")
             self._units += done
             if self._cut_too or done:
                 self._end, self._sum = self._file.tell(), total
+
+    @staticmethod
+    def _added(text: bytes, total: int) -> int:
+        """The checksum with one more text; its end counts, or two texts could become one."""
+        return zlib.crc32(text + b"\n", total)
 
     @staticmethod
     def _line(text: bytes, total: int) -> bytes:
@@ -145,7 +150,7 @@ class Journal:
     def _write(self, text: bytes, flush: bool = False) -> None:
         if self._reader is None or self._stopped:
             return
-        self._sum = zlib.crc32(text, self._sum)
+        self._sum = self._added(text, self._sum)
         try:
             self._file.write(self._line(text, self._sum))
             if flush:
