@@ -9,6 +9,8 @@ from topomap.files import output
 from topomap.scenes import Scene
 from topomap.solver import INTERRUPT, PARTS, Query, Watch
 
+FORMATS = ("svg", "png", "pdf")
+
 
 def draw(args: argparse.Namespace) -> int:
     """Draw a map into a file."""
@@ -23,9 +25,6 @@ def draw(args: argparse.Namespace) -> int:
 
         draw.save(draw.picture([scene]), file, form)
     return status
-
-
-FORMATS = ("svg", "png", "pdf")
 
 
 def _scene(args: argparse.Namespace) -> tuple[Scene | None, int]:
