@@ -83,6 +83,7 @@ def _parser() -> Parser:
     _add_table(group)
     _add_family(group)
     _add_draw(group)
+    _add_figures(group)
     return parser
 
 
@@ -463,4 +464,26 @@ def _add_draw(group: Any) -> None:
     _add_scene(command)
     command.add_argument(
         "-o", "--output", required=True, metavar="FILE", help="FILE.svg, FILE.png or FILE.pdf"
+    )
+
+
+def _add_figures(group: Any) -> None:
+    command = _command(
+        group,
+        "figures",
+        pictures.figures,
+        "draw the paper's figures and some more, from computed answers",
+        "  topomap figures -d docs/figures\n  topomap figures figure1 figure5 -d .",
+    )
+    command.add_argument(
+        "figure", nargs="*", default=(), metavar="FIGURE", help="these only, as figure1"
+    )
+    command.add_argument(
+        "-d", "--directory", required=True, metavar="DIR", help="folder for FIGURE.svg"
+    )
+    command.add_argument(
+        "--instances",
+        default="instances",
+        metavar="DIR",
+        help="where they are (default: instances)",
     )

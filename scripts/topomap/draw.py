@@ -121,7 +121,7 @@ def _draw_crossing(axes: Axes, laid: Layout, out: Gateway, end: Gateway) -> None
 
 
 def _draw_place(axes: Axes, world: TopologicalMap, place: Place, point: Points) -> None:
-    signs = ", ".join(sorted(world.landmarks.get(place, ())))
+    signs = ", ".join(sign.strip('"') for sign in sorted(world.landmarks.get(place, ())))
     face = SIGNED if signs else "white"
     axes.add_patch(
         Circle(tuple(point), RADIUS, fc=face, ec=INK, lw=1.2, zorder=4, gid=f"place-{label(place)}")
