@@ -10,6 +10,7 @@ import matplotlib as mpl
 import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
 
 from topomap import branching, draw, figure4, search, solver
 from topomap.environment import grid
@@ -80,7 +81,8 @@ def figure1(experience: Experience, watch: Watch) -> Figure:
 def figure3(watch: Watch) -> Figure:
     """The paper's Figure 3: next(e1) = pred(rev(e1)), and the walks round three faces."""
     made = instance(grid(2, 3), "snake")
-    (scene,) = maps(made.experience, watch, "planar", "closed", "perpendicular")
+    (found,) = maps(made.experience, watch, "planar", "closed", "perpendicular")
+    scene = replace(found, at=())
     with mpl.rc_context(draw.STYLE):
         figure = _figure(6.4, 2.6)
         left, right = figure.subplots(1, 2)
@@ -126,19 +128,19 @@ def _arrow(axes: Any, line: Points, colour: str) -> None:
 
 def growth(watch: Watch) -> Figure:
     """Beside the paper's Figure 4: how the tree grows, step by step."""
-    rows = [figure4.row(column, watch) for column in figure4.COLUMNS]
+    rows = [(column, figure4.row(column, watch)["per_step"]) for column in figure4.COLUMNS]
     with mpl.rc_context(draw.STYLE):
         figure = _figure(9, 3.2)
-        names = list(dict.fromkeys(row["environment"] for row in rows))
+        names = list(dict.fromkeys(column["environment"] for column, _ in rows))
         for name, axes in zip(names, figure.subplots(1, len(names)), strict=True):
-            for row in rows:
-                if row["environment"] == name:
-                    label, colour = ("planar", BLUE) if row["planarity"] else ("any", ORANGE)
-                    axes.semilogy(row["per_step"], ".-", color=colour, label=label, lw=1.2, ms=4)
-            places = next(row["places"] for row in rows if row["environment"] == name)
-            most = f", at most {places} places" if places else ""
-            axes.set_title(f"{name}{most}", fontsize=9)
+            for column, per_step in rows:
+                if column["environment"] == name:
+                    places = column["places"]
+                    label, colour = ("planar", BLUE) if column["planarity"] else ("any", ORANGE)
+                    axes.semilogy(per_step, ".-", color=colour, label=label, lw=1.2, ms=4)
+            axes.set_title(f"{name}, at most {places} places" if places else name, fontsize=9)
             axes.set_xlabel("step", fontsize=8)
+            axes.xaxis.set_major_locator(MaxNLocator(integer=True))
             _plain(axes)
         figure.axes[0].set_ylabel("maps consistent so far", fontsize=8)
         figure.axes[0].legend(fontsize=8, frameon=False)
