@@ -1,5 +1,7 @@
 """The figures: what they show is computed, and the committed ones are what is drawn."""
 
+import re
+
 import pytest
 from conftest import ROOT
 from topomap import figures
@@ -27,8 +29,6 @@ def test_the_committed_figures_are_what_is_drawn(tmp_path, monkeypatch, name):
 
 def words(svg):
     """The texts and the named parts of a picture."""
-    import re
-
     return re.findall(r"<text [^>]*>([^<]*)</text>", svg), re.findall(r'<g id="([\w.-]+)"', svg)
 
 
