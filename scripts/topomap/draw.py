@@ -40,8 +40,7 @@ def draw(axes: Axes, scene: Scene, faces: bool = True, route: bool = True) -> La
         _draw_faces(axes, laid)
     for gateway, line in laid.lines.items():
         _draw_line(axes, world, laid, gateway, line)
-    for out, end in laid.crossing:
-        _draw_crossing(axes, laid, out, end)
+    curves = [_draw_crossing(axes, laid, out, end) for out, end in laid.crossing]
     for place, point in laid.places.items():
         _draw_place(axes, world, place, point)
     if route:
@@ -52,7 +51,7 @@ def draw(axes: Axes, scene: Scene, faces: bool = True, route: bool = True) -> La
     axes.set_title(scene.title, fontsize=9, color=INK, pad=8)
     axes.set_aspect("equal")
     axes.set_axis_off()
-    points = np.concatenate([*laid.lines.values(), *([p] for p in laid.places.values())])
+    points = np.concatenate([*laid.lines.values(), *curves, *([p] for p in laid.places.values())])
     low, high = points.min(0) - 0.45, points.max(0) + 0.45
     axes.set_xlim(low[0], high[0])
     axes.set_ylim(low[1], high[1])
@@ -107,17 +106,19 @@ def gid(gateway: Gateway) -> str:
     return f"{label(gateway[0])}.{gateway[1]}"
 
 
-def _draw_crossing(axes: Axes, laid: Layout, out: Gateway, end: Gateway) -> None:
-    """The middle of a link that crosses others: from stub to stub, as it leaves them."""
+def _draw_crossing(axes: Axes, laid: Layout, out: Gateway, end: Gateway) -> Points:
+    """The middle of a link that crosses others, from stub to stub, as it leaves them; returns
+    its points."""
     (a, b), (d, c) = (laid.lines[gateway][-2:] for gateway in (out, end))
     far = min(0.7, np.linalg.norm(c - b) / 2)
     first, last = ((q - p) / np.linalg.norm(q - p) for p, q in ((a, b), (d, c)))
     t = np.linspace(0, 1, 40)[:, None]
     points = [b, b + far * first, c + far * last, c]
     weights = [(1 - t) ** 3, 3 * t * (1 - t) ** 2, 3 * t**2 * (1 - t), t**3]
-    curve = sum(w * p for w, p in zip(weights, points, strict=True))
+    curve = np.asarray(sum(w * p for w, p in zip(weights, points, strict=True)))
     name = f"crossing-{gid(out)}-to-{gid(end)}"
-    axes.plot(*np.asarray(curve).T, color=CROSSING, lw=1.6, ls=DASHES, gid=name)
+    axes.plot(*curve.T, color=CROSSING, lw=1.6, ls=DASHES, gid=name)
+    return curve
 
 
 def _draw_place(axes: Axes, world: TopologicalMap, place: Place, point: Points) -> None:
@@ -221,18 +222,29 @@ def picture(scenes: Sequence[Scene], columns: int = 3) -> Figure:
         columns = min(columns, len(scenes))
         rows = -(-len(scenes) // columns)
         grid = figure.subplots(rows, columns, squeeze=False)
-        spans = []
-        for scene, axes in zip(scenes, grid.ravel(), strict=False):
+        used = grid.ravel()[: len(scenes)]
+        for scene, axes in zip(scenes, used, strict=True):
             draw(axes, scene)
-            spans.append((np.ptp(axes.get_xlim()), np.ptp(axes.get_ylim())))
+        # One scale for all: each map in the middle of as much room as the largest needs.
+        width, height = np.max([_spans(axes) for axes in used], axis=0)
+        for axes in used:
+            (x0, x1), (y0, y1) = axes.get_xlim(), axes.get_ylim()
+            axes.set_xlim((x0 + x1 - width) / 2, (x0 + x1 + width) / 2)
+            axes.set_ylim((y0 + y1 - height) / 2, (y0 + y1 + height) / 2)
         for axes in grid.ravel()[len(scenes) :]:
             axes.set_axis_off()
-        width, height = (max(span) * UNIT for span in zip(*spans, strict=True))
-        figure.set_size_inches(max(4.5, columns * width), rows * (height + 0.6) + 0.6)
+        size = max(4.5, columns * width * UNIT), rows * (height * UNIT + 0.6) + 0.6
+        figure.set_size_inches(size)
         legend(figure, scenes)
         bottom = 0.6 / figure.get_size_inches()[1]
         figure.subplots_adjust(0.01, bottom, 0.99, 1 - bottom * 0.9, 0.02, 0.15)
     return figure
+
+
+def _spans(axes: Axes) -> tuple[float, float]:
+    """Width and height of what axes show."""
+    (x0, x1), (y0, y1) = axes.get_xlim(), axes.get_ylim()
+    return x1 - x0, y1 - y0
 
 
 def save(figure: Figure, file: IO[bytes], format: str) -> None:
