@@ -8,12 +8,13 @@ from collections.abc import Iterable, Sequence
 from functools import cache
 from typing import Any, NoReturn
 
-from topomap import __version__, commands, maps
+from topomap import __version__, commands, maps, pictures
 from topomap.environment import MOST_STEPS
 from topomap.errors import BAD_INPUT, DONE, INTERRUPTED, PARTIAL, InputError, say
 from topomap.experience import LARGEST
 from topomap.solver import FORMS, OPTIMIZING, PARTS, PRUNING
 
+DRAWN_PARTS = ("planar", "perpendicular")
 STATUS = """\
 exit status: 0 done; 1 the answer is no (the table differs, no map, an unsound map);
 2 bad input or usage; 3 partial (a limit, a time-out, no memory left); 130 interrupted"""
@@ -81,6 +82,8 @@ def _parser() -> Parser:
     _add_branching(group)
     _add_table(group)
     _add_family(group)
+    _add_draw(group)
+    _add_figures(group)
     return parser
 
 
@@ -428,3 +431,59 @@ def _add_family(group: Any) -> None:
         help="folder for NAME.args; files of instances no longer listed go",
     )
     command.add_argument("--json", action="store_true", help="print JSON")
+
+
+def _add_scene(command: Parser) -> None:
+    """Arguments of what shows a map."""
+    add = command.add_argument
+    add(
+        "file",
+        metavar="INSTANCE|MAPS.json",
+        help="an instance, of which the optimal maps are shown, or the best so far; or maps, from "
+        "topomap solve --json",
+    )
+    add("--map", type=_number(int, 1), metavar="N", help="the N-th of the maps (default: 1)")
+    for part in DRAWN_PARTS:
+        add(f"--{part}", action="store_true", help=f"of an instance: {PARTS[part]}")
+    add("--bound", type=_number(int, 1), metavar="B", help="of an instance: at most B places")
+    add("--horizon", type=_number(int, 0), metavar="T", help="of an instance: up to step T")
+    add("--timeout", type=_number(float, 0.001), metavar="S", help="stop after S seconds")
+
+
+def _add_draw(group: Any) -> None:
+    command = _command(
+        group,
+        "draw",
+        pictures.draw,
+        "draw a map, as SVG, PNG or PDF",
+        """\
+  topomap draw instances/grid-4x4-snake.lp --map 2 -o map.svg
+  topomap solve instances/grid-3x3-snake.lp --closed --json -o maps.json
+  topomap draw maps.json --map 3 -o map.png""",
+    )
+    _add_scene(command)
+    command.add_argument(
+        "-o", "--output", required=True, metavar="FILE", help="FILE.svg, FILE.png or FILE.pdf"
+    )
+
+
+def _add_figures(group: Any) -> None:
+    command = _command(
+        group,
+        "figures",
+        pictures.figures,
+        "draw the paper's figures and some more, from computed answers",
+        "  topomap figures -d docs/figures\n  topomap figures figure1 figure5 -d .",
+    )
+    command.add_argument(
+        "figure", nargs="*", default=(), metavar="FIGURE", help="these only, as figure1"
+    )
+    command.add_argument(
+        "-d", "--directory", required=True, metavar="DIR", help="folder for FIGURE.svg"
+    )
+    command.add_argument(
+        "--instances",
+        default="instances",
+        metavar="DIR",
+        help="where they are (default: instances)",
+    )

@@ -9,13 +9,14 @@ import tempfile
 from collections.abc import Iterator
 from errno import EISDIR, ELOOP
 from pathlib import Path
-from typing import IO
+from typing import IO, Any
 
 from topomap.errors import InputError, of_file
 
 MOST_BYTES = 2**25
 _CHUNK = 2**20
 _TEMPORARY = ".topomap-"
+TEXT = {"encoding": "utf-8", "errors": "backslashreplace"}
 
 
 def data(path: str | Path) -> bytes:
@@ -50,13 +51,15 @@ def _content(path: str | Path, most: int, forbidden: bytes | None = None) -> byt
 
 
 @contextlib.contextmanager
-def output(path: str | None, parents: bool = False) -> Iterator[IO[str]]:
+def output(path: str | None, parents: bool = False, binary: bool = False) -> Iterator[IO[Any]]:
     """A text to write: standard output without a path, else a temporary file beside
-    the named one that takes its place when all is written; ``parents`` makes its folder.
+    the named one that takes its place when all is written; ``parents`` makes its folder,
+    ``binary`` takes bytes.
     Raises InputError where that cannot be."""
     try:
+        how: dict[str, Any] = {"mode": "wb"} if binary else {"mode": "w", **TEXT}
         if path is None:
-            yield sys.stdout
+            yield sys.stdout.buffer if binary else sys.stdout
             sys.stdout.flush()
             return
         target = Path(os.path.realpath(path))
@@ -67,10 +70,10 @@ def output(path: str | None, parents: bool = False) -> Iterator[IO[str]]:
         if target.is_dir() or path.endswith("/"):
             raise IsADirectoryError(EISDIR, os.strerror(EISDIR))
         if Path(path).exists() and not Path(path).is_file():
-            with Path(path).open("w", encoding="utf-8", errors="backslashreplace") as device:
+            with Path(path).open(**how) as device:
                 yield device
             return
-        with _temporary(target.parent) as file:
+        with _temporary(target.parent, how) as file:
             try:
                 yield file
                 file.flush()
@@ -90,7 +93,7 @@ def output(path: str | None, parents: bool = False) -> Iterator[IO[str]]:
         raise InputError(f"{path}: not the name of a file") from None
 
 
-def _temporary(folder: Path) -> IO[str]:
+def _temporary(folder: Path, how: dict[str, Any]) -> IO[Any]:
     """A new file in a folder, locked while its writer lives. A writer that was killed
     leaves one without a lock: these go."""
     for left in folder.glob(f"{_TEMPORARY}*"):
@@ -98,13 +101,8 @@ def _temporary(folder: Path) -> IO[str]:
             fcntl.flock(old, fcntl.LOCK_EX | fcntl.LOCK_NB)
             left.unlink()
     while True:
-        file = tempfile.NamedTemporaryFile(  # noqa: SIM115
-            "w",
-            encoding="utf-8",
-            errors="backslashreplace",
-            dir=folder,
-            prefix=_TEMPORARY,
-            delete=False,
+        file: IO[Any] = tempfile.NamedTemporaryFile(  # noqa: SIM115
+            dir=folder, prefix=_TEMPORARY, delete=False, **how
         )
         with contextlib.suppress(OSError):  # no locks in this file system: nothing is cleaned
             fcntl.flock(file, fcntl.LOCK_EX)

@@ -116,6 +116,7 @@ def _is_truth(value: object) -> bool:
 
 CLAIMS: dict[str, Callable[[Any], bool]] = {
     "instance": _is_text,
+    "slots": _is_number,
     "parts": _is_list_of(lambda part: isinstance(part, str) and part in PARTS),
     "bound": _is_number_or_none,
     "horizon": _is_number_or_none,

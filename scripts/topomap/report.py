@@ -59,6 +59,7 @@ class Report:
         if as_json:
             head = {
                 "instance": instance,
+                "slots": experience.slots,
                 "parts": sorted(query.parts),
                 "bound": query.places,
                 "horizon": query.horizon,

@@ -1,0 +1,141 @@
+"""Maps to be shown: the best ones of an instance, or those in a file of maps."""
+
+from collections import defaultdict
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Any
+
+import networkx as nx
+
+from topomap import maps, solver
+from topomap.errors import InputError
+from topomap.experience import MOST_SLOTS, Experience, parse
+from topomap.files import text
+from topomap.solver import MEMORY, Found, Query, Stopped, Watch
+from topomap.topology import Gateway, TopologicalMap
+
+MOST_PLACES = 1000  # in a picture
+
+
+@dataclass(frozen=True)
+class Scene:
+    """A map, and the dstate after each step of the route in it, from step 0 (or none).
+
+    ``name`` says where it is from; ``number`` of ``many`` such maps; ``kind`` what they are;
+    ``caption`` is a title instead of these.
+    """
+
+    world: TopologicalMap
+    at: Sequence[Gateway]
+    name: str
+    number: int = 1
+    many: int = 1
+    kind: str = ""
+    caption: str = ""
+
+    @property
+    def title(self) -> str:
+        """What the map is, in two lines."""
+        world = self.world
+        which = f"map {self.number} of {self.many}" if self.many > 1 else "the only map"
+        genus = world.genus()
+        sizes = [
+            _number(len(world.stars), "place"),
+            _number(len(world.links) // 2, "link"),
+            _number(len(world.paths()), "path"),
+            "planar" if genus == 0 else f"genus {genus}",
+        ]
+        title = self.caption or f"{self.name}: {which}{f', {self.kind}' * bool(self.kind)}"
+        return f"{title}\n{', '.join(sizes)}"
+
+    def steps(self) -> dict[Gateway, list[int]]:
+        """The steps that leave by each gateway."""
+        found: dict[Gateway, list[int]] = defaultdict(list)
+        for step, arrival in enumerate(self.at[1:], 1):
+            found[self.world.links[arrival]].append(step)
+        return found
+
+
+def _number(number: int, noun: str) -> str:
+    return f"{number} {noun}{'s' * (number != 1)}"
+
+
+def read(path: str, query: Query, watch: Watch) -> tuple[list[Scene], str | None]:
+    """The maps of a file, and why they may not be all of them, if so.
+
+    Of an instance they are the optimal ones, or the best so far, that have the parts of the
+    query; of a text of ``solve --json`` those in it. Raises InputError, one line.
+    """
+    content = text(path, maps.MOST_BYTES)
+    if content.lstrip()[:1] in ("{", "["):
+        return [scene for document in maps.read(path) for scene in _of_document(document)], None
+    return _best(parse(content, path), path, query, watch)
+
+
+def _best(
+    experience: Experience, name: str, query: Query, watch: Watch
+) -> tuple[list[Scene], str | None]:
+    found: list[Found] = []
+    fault = None
+    try:
+        for one in filter(None, solver.best(experience, query, watch, solver.hypotheses)):
+            found = [*found, one] if one.proved and found and found[0].proved else [one]
+    except (Stopped, MemoryError) as stop:
+        fault = str(stop) or MEMORY
+    found.sort(key=lambda one: one.at)
+    kinds = [one.kind if one.proved else "not proved to be best" for one in found]
+    return [
+        Scene(experience.map_of(one.at), one.at, name, number, len(found), kind)
+        for number, (one, kind) in enumerate(zip(found, kinds, strict=True), 1)
+    ], fault
+
+
+def _of_document(document: maps.Document) -> list[Scene]:
+    name = str(document.claims.get("instance") or document.where)
+    slots = document.claims.get("slots")
+    scenes = []
+    for number, entry in enumerate(document.maps, 1):
+        where = f"{document.where}: map {number}"
+        if slots is None or not {"places", "links"} <= set(entry):
+            raise InputError(f"{where}: slots, places and links are wanted, as solve --json writes")
+        world = world_of(slots, entry, where)
+        at = [(place, slot) for _, place, slot in sorted(entry["at"])]
+        if any(world.links.get(b, (None,))[0] != a[0] for a, b in pairwise(at)):
+            raise InputError(f"{where}: at goes by links that are not there")
+        kind = str(document.claims.get("kind") or "")
+        scenes.append(Scene(world, at, name, number, len(document.maps), kind))
+    return scenes
+
+
+def world_of(slots: int, entry: dict[str, Any], where: str) -> TopologicalMap:
+    """The map that ``places`` and ``links`` describe. Raises InputError if it is none: if it is
+    in parts, a gateway has two links, or is not there."""
+    try:
+        stars = {
+            int(place["place"]): frozenset(int(slot) for slot in place["gateways"])
+            for place in entry["places"]
+        }
+        landmarks = {
+            int(place["place"]): frozenset(map(str, place["landmarks"]))
+            for place in entry["places"]
+        }
+        pairs = [tuple((int(p), int(s)) for p, s in link) for link in entry["links"]]
+        ends = [end for link in pairs for end in link]
+        links = {a: b for one, other in pairs for a, b in ((one, other), (other, one))}
+    except (LookupError, TypeError, ValueError):
+        raise InputError(f"{where}: places or links are not as solve --json writes them") from None
+    if not stars or len(stars) > MOST_PLACES:
+        raise InputError(f"{where}: {len(stars)} places; a picture has 1 to {MOST_PLACES}")
+    if not 2 <= slots <= MOST_SLOTS or slots % 2:
+        raise InputError(f"{where}: slots is not an even number from 2 to {MOST_SLOTS}")
+    for place, slot in ends:
+        if slot not in stars.get(place, ()) or ends.count((place, slot)) > 1:
+            raise InputError(f"{where}: link at place {place}, gateway {slot}: not there, or two")
+    if any(not 0 <= slot < slots for star in stars.values() for slot in star):
+        raise InputError(f"{where}: a gateway is not from 0 to {slots - 1}")
+    graph = nx.Graph([(a[0], b[0]) for a, b in links.items()])
+    graph.add_nodes_from(stars)
+    if not nx.is_connected(graph):
+        raise InputError(f"{where}: the map is in parts")
+    return TopologicalMap(slots, stars, links, landmarks)
