@@ -140,10 +140,14 @@ def test_an_interrupted_table_says_so(tmp_path):
 def test_a_time_limit_ends_the_table(topomap, tmp_path, beyond):
     file = tmp_path / "table.json"
     file.write_text("old")
-    done = topomap("table", *beyond, "--timeout", "2", "--json", "-o", file)
-    answer = json.loads(done.stdout)
+    goes_on = f"{file}: partial; the same call with --resume goes on from here"
+    for seconds in (2, 8, 30):  # in which something is done, how slow the machine may be
+        done = topomap("table", *beyond, "--timeout", seconds, "--json", "-o", file)
+        answer = json.loads(done.stdout)
+        if not beyond or goes_on in done.stderr:
+            break
     assert (done.returncode, answer["complete"], answer["fault"]) == (3, False, "timeout")
-    assert ("the same call with --resume goes on from here" in done.stderr) == bool(beyond)
+    assert (goes_on in done.stderr) == bool(beyond)
     assert file.read_text() == "old"
 
 
