@@ -141,7 +141,7 @@ def test_a_time_limit_ends_the_table(topomap, tmp_path, beyond):
     file = tmp_path / "table.json"
     file.write_text("old")
     goes_on = f"{file}: partial; the same call with --resume goes on from here"
-    for seconds in (2, 8, 30):  # in which something is done, how slow the machine may be
+    for seconds in (1, 8, 30):  # in which something is done, how slow the machine may be
         done = topomap("table", *beyond, "--timeout", seconds, "--json", "-o", file)
         answer = json.loads(done.stdout)
         if not beyond or goes_on in done.stderr:
