@@ -12,6 +12,7 @@ searches without it, reads answers, checks and compares them.
 ``generate``        one record from which name, header and facts come
 ``solver``          clingo on the encodings: enumeration, optimal maps
 ``phases``          large maps: what is certain first, by small programs
+``plane``           planarity as clauses, added where two ways cross
 ``hypothesis``      a node of the paper's search tree, entered and undone
 ``search``          the tree breadth-first, depth-first, best-first: the second way
 ``branching``       the paper's equation (1), node by node
@@ -23,9 +24,14 @@ searches without it, reads answers, checks and compares them.
 ``maps``            maps that anyone made: read, and judged
 ``journal``         long runs go on where they were cut
 ``report``          maps as JSON, and as lines to read
+``scenes``          maps to be shown: of an instance, or from a file
+``layout``          where places, links and pending gateways are drawn
+``draw``            pictures of maps
+``figures``         the paper's figures, from computed answers
 ``family``          files that list the instances of a batch
 ``files``           inputs within a limit; outputs that are whole or not there
 ``commands``        what each subcommand does
+``pictures``        the same of those that draw
 ``cli``             the command ``topomap``: arguments, help, exit status
 ==================  =====================================================
 """
