@@ -29,12 +29,8 @@ ORDERS = 30  # of links, for a planar part
 STUB = 0.36  # the length of a stub, where a link is of length 1
 BENDS = 3  # inner points of a link that is not straight
 SHORTEST = 0.4  # link in a drawing by the compass
-SPREAD = 6, 0.35  # how often Tutte's drawing is made anew, and how much longer springs stiffen
 MEMORY = 20  # steps that the descent remembers
-SOFTER = 1e-2, 1e-3, 1e-4  # flatness from which a triangle may be folded, at first
-UNFOLDED = 1e-5  # flatness that is none: area by the sum of the squared sides
-STIFF = 100.0  # weight of the triangles at first
-WEIGHTS = 10.0, 1.0, 0.1, 0.01, 0.002  # and later
+WEIGHTS = 100.0, 10.0, 1.0, 0.1, 0.01, 0.002  # of the triangles, one after the other
 
 
 @dataclass(frozen=True)
@@ -261,25 +257,47 @@ class _Mesh:
         return found
 
     def start(self) -> Points:
-        """Each point the mean of its neighbours, those far away counting more."""
-        sides = np.concatenate([self.triangles[:, pair] for pair in ([0, 1], [1, 2], [2, 0])])
-        a, b = np.unique(np.concatenate([sides, sides[:, ::-1]]), axis=0).T
-        turn = 2 * np.pi * np.arange(len(self.rim)) / len(self.rim)
+        """A drawing in which no triangle is folded, with the rim on a circle: each other point is
+        the mean of its neighbours by the weights (Floater, Mean value coordinates, 2003) that
+        it has in a drawing on a grid, where nothing is too small for the numbers to hold."""
+        points = self._on_a_grid()
+        entries: list[tuple[Numbers, Numbers, Points]] = []
+        for corners in ([0, 1, 2], [1, 2, 0], [2, 0, 1]):
+            a, b, c = self.triangles[:, corners].T
+            u, v = points[b] - points[a], points[c] - points[a]
+            half = np.tan(np.arctan2(_cross(u, v), (u * v).sum(1)) / 2)
+            entries += [(a, b, half / np.linalg.norm(u, axis=1))]
+            entries += [(a, c, half / np.linalg.norm(v, axis=1))]
+        rows, columns, weights = (np.concatenate(part) for part in zip(*entries, strict=True))
+        pull = sparse.coo_matrix((weights, (rows, columns)), (self.size, self.size)).tocsr()
         number = len(self.world.stars)
         radius = 2 + 1.5 * number**0.5 + 0.12 * number
-        points = np.zeros((self.size, 2))
+        turn = 2 * np.pi * np.arange(len(self.rim)) / len(self.rim)
         points[self.rim] = radius * np.stack([np.cos(turn), np.sin(turn)], 1)
         free = np.setdiff1d(np.arange(self.size), self.rim)
-        weight = np.ones(len(a))
-        times, power = SPREAD
-        for _ in range(times):
-            pull = sparse.coo_matrix((weight, (a, b)), (self.size, self.size)).tocsr()
-            total = sparse.diags(np.asarray(pull.sum(1)).ravel()[free])
-            fixed = pull[free][:, self.rim] @ points[self.rim]
-            points[free] = linalg.spsolve((total - pull[free][:, free]).tocsc(), fixed)
-            length = np.linalg.norm(points[a] - points[b], axis=1)
-            weight *= (length / length.mean()) ** power
+        total = sparse.diags(np.asarray(pull.sum(1)).ravel()[free])
+        fixed = pull[free][:, self.rim] @ points[self.rim]
+        points[free] = linalg.spsolve((total - pull[free][:, free]).tocsc(), fixed)
         return points
+
+    def _on_a_grid(self) -> Points:
+        """A drawing of the mesh with whole numbers as coordinates (Chrobak and Payne 1995)."""
+        follows: dict[int, dict[int, int]] = {point: {} for point in range(self.size)}
+        for corners in self.triangles.tolist():
+            for n in range(3):
+                here, right, left = corners[n:] + corners[:n]
+                follows[here][right] = left
+        around = {}
+        for point, left_of in follows.items():
+            first = min(set(left_of) - set(left_of.values()), default=min(left_of))
+            order = [first]
+            while (following := left_of.get(order[-1], first)) != first:
+                order.append(following)
+            around[point] = order[::-1]
+        embedding: nx.PlanarEmbedding[int] = nx.PlanarEmbedding()
+        embedding.set_data(around)
+        found = nx.combinatorial_embedding_to_pos(embedding)
+        return np.array([found[point] for point in range(self.size)], float)
 
 
 class _Shape:
@@ -314,13 +332,6 @@ class _Shape:
         self.ends = np.array(ends, int).reshape(-1, 2).T
         self.pairs = np.array(np.triu_indices(self.places, 1))
 
-    def flattest(self, points: Points) -> float:
-        """How flat the flattest triangle is; less than 0 if one is folded."""
-        a, b, c = (points[corner] for corner in self.triangles)
-        return float(
-            (_cross(b - a, c - a) / (((b - a) ** 2 + (c - b) ** 2 + (a - c) ** 2).sum(1))).min()
-        )
-
     def norths(self, points: Points) -> Points:
         """The direction of each place's slot 0 that fits its gateways best, in radians."""
         place, end, slot = self.gateways
@@ -330,25 +341,19 @@ class _Shape:
         return np.arctan2(y, x)
 
     def __call__(
-        self, points: Points, norths: Points, weight: float, softness: float
+        self, points: Points, norths: Points, weight: float
     ) -> tuple[float, Points, Points]:
-        """The energy, and its slope by point and by north. Infinite if a triangle is folded;
-        with ``softness`` finite, and a folded triangle is forced to unfold."""
+        """The energy, and its slope by point and by north; infinite if a triangle is folded."""
         total = 0.0
         moved: list[tuple[Numbers, Points]] = []
         a, b, c = self.triangles
         u, v = points[b] - points[a], points[c] - points[a]
         w, area = v - u, _cross(u, v)
         squares = (u**2 + v**2 + w**2).sum(1)
-        flat = area / squares
-        if not softness and flat.min() <= 0:
+        if area.min() <= 0:
             return np.inf, points, norths
-        low = flat < softness
-        kept = np.where(low, softness, flat)
-        over = (flat - kept) / kept  # beyond the softness the logarithm goes on as a parabola
-        total += weight * (over**2 / 2 - over - np.log(kept)).sum()
-        slope = weight * (over - 1) / kept
-        by_area, by_squares = (slope / squares)[:, None], (-2 * slope * flat / squares)[:, None]
+        total += weight * (np.log(squares) - np.log(area)).sum()
+        by_area, by_squares = -weight / area[:, None], 2 * weight / squares[:, None]
         at_b = by_area * np.stack([v[:, 1], -v[:, 0]], 1) + by_squares * (u - w)
         at_c = by_area * np.stack([-u[:, 1], u[:, 0]], 1) + by_squares * (v + w)
         moved += [(b, at_b), (c, at_c), (a, -at_b - at_c)]
@@ -413,18 +418,14 @@ def _bent(
         points[free] = x[: 2 * len(free)].reshape(-1, 2)
         return points
 
-    def energy(weight: float, softness: float = 0.0) -> Callable[[Points], tuple[float, Points]]:
+    def energy(weight: float) -> Callable[[Points], tuple[float, Points]]:
         def at(x: Points) -> tuple[float, Points]:
-            total, slope, turned = shape(drawing(x), x[2 * len(free) :], weight, softness)
+            total, slope, turned = shape(drawing(x), x[2 * len(free) :], weight)
             return total, np.concatenate([slope[free].ravel(), turned])
 
         return at
 
     x = np.concatenate([points[free].ravel(), shape.norths(points)])
-    for softness in SOFTER:
-        x = _descend(energy(STIFF, softness), x, 300)
-        if shape.flattest(drawing(x)) > UNFOLDED:
-            break
     for weight in WEIGHTS:
         x = _descend(energy(weight), x, 1500)
     points = drawing(x)
