@@ -4,8 +4,10 @@ import json
 import os
 import random
 import re
+import signal
 import subprocess
 import sys
+import time
 from io import BytesIO
 from itertools import combinations, pairwise
 
@@ -262,3 +264,30 @@ def test_bad_calls_are_refused(arguments, fault):
     done = run("topomap", "draw", *arguments)
     assert (done.returncode, done.stdout, len(done.stderr.splitlines())) == (2, "", 1)
     assert fault in done.stderr
+
+
+def test_no_map_and_no_time_leave_no_picture(tmp_path):
+    instance = tmp_path / "none.lp"
+    # A way that leads on, and back to itself, from a place with a single way.
+    instance.write_text(
+        "slots(4). view(0,0). turn(1,0). view(1,0). turn(2,0). view(2,0). view(2,1)."
+    )
+    large = ROOT / "instances/manhattan-tour88-signs30.lp"
+    for call, status, line in (
+        ([instance], 1, "no map is consistent with it"),
+        ([large, "--timeout", "0.01"], 3, "partial: timeout"),
+    ):
+        done = run("topomap", "draw", *call, "-o", tmp_path / "map.svg")
+        assert (done.returncode, done.stdout, done.stderr) == (status, "", f"{call[0]}: {line}\n")
+        assert not (tmp_path / "map.svg").exists()
+
+
+def test_interrupted_figures_say_so(tmp_path):
+    call = [sys.executable, "-m", "topomap", "figures", "-d", str(tmp_path)]
+    with subprocess.Popen(call, cwd=ROOT, stderr=subprocess.PIPE, text=True) as process:
+        while not any(tmp_path.glob("figure*")):
+            time.sleep(0.05)
+        process.send_signal(signal.SIGINT)
+        _, told = process.communicate(timeout=60)
+    assert (process.returncode, told.splitlines()[-1]) == (130, f"{tmp_path}: partial: interrupted")
+    assert {path.suffix for path in tmp_path.iterdir()} == {".svg"}

@@ -4,10 +4,10 @@ import argparse
 from pathlib import Path
 
 from topomap import scenes
-from topomap.errors import DONE, INTERRUPTED, PARTIAL, InputError, say
+from topomap.errors import DONE, INTERRUPTED, NO, PARTIAL, InputError, say
 from topomap.files import output
 from topomap.scenes import Scene
-from topomap.solver import INTERRUPT, PARTS, Query, Watch
+from topomap.solver import INTERRUPT, PARTS, Query, Stopped, Watch
 
 FORMATS = ("svg", "png", "pdf")
 
@@ -17,13 +17,12 @@ def draw(args: argparse.Namespace) -> int:
     form = Path(args.output).suffix[1:].lower()
     if form not in FORMATS:
         raise InputError(f"{args.output}: a picture is {', '.join(FORMATS)}, by its last letters")
-    with output(args.output, binary=True) as file:
-        scene, status = _scene(args)
-        if scene is None:
-            raise InputError(f"{args.file}: no map to draw")
+    scene, status = _scene(args)
+    if scene is not None:
         from topomap import draw  # matplotlib takes its time
 
-        draw.save(draw.picture([scene]), file, form)
+        with output(args.output, binary=True) as file:
+            draw.save(draw.picture([scene]), file, form)
     return status
 
 
@@ -34,10 +33,12 @@ def _scene(args: argparse.Namespace) -> tuple[Scene | None, int]:
         found, fault = scenes.read(args.file, Query(parts, args.bound, args.horizon), watch)
     if fault:
         say(f"{args.file}: partial: {fault}")
+    elif not found:
+        say(f"{args.file}: no map is consistent with it")
     number = args.map or 1
-    if number > len(found) and (found or not fault):
+    if found and number > len(found):
         raise InputError(f"{args.file}: it has {len(found)} maps, there is no map {number}")
-    status = (INTERRUPTED if fault == INTERRUPT else PARTIAL) if fault else DONE
+    status = (INTERRUPTED if fault == INTERRUPT else PARTIAL) if fault else DONE if found else NO
     return (found[number - 1] if found else None), status
 
 
@@ -53,10 +54,15 @@ def figures(args: argparse.Namespace) -> int:
         for name in chosen:
             if name not in made:
                 raise InputError(f"{name}: the figures are {', '.join(made)}")
-        for name in chosen:
-            watch.title(name)
-            file = folder / f"{name}.svg"
-            with output(str(file), parents=True, binary=True) as out:
-                draw.save(made[name](), out, "svg")
-            print(file)
+        try:
+            for name in chosen:
+                watch.title(name)
+                figure = made[name]()
+                watch.tick()
+                with output(str(folder / f"{name}.svg"), parents=True, binary=True) as out:
+                    draw.save(figure, out, "svg")
+                print(folder / f"{name}.svg")
+        except Stopped as stop:
+            say(f"{folder}: partial: {stop}")
+            return INTERRUPTED
     return DONE
