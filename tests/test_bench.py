@@ -232,7 +232,7 @@ def test_rows_are_measured_again_into_what_there_is(bench):
     assert document["rows"][1] == first["rows"][1]
     assert document["rows"][0] != first["rows"][0]
     assert [again["rows"] for again in document["again"]] == [["one"]]
-    assert ": one; and" in text
+    assert ": one.\n" in text
 
 
 def test_what_more_processes_gain_is_told_and_that_they_count_the_same(monkeypatch):

@@ -79,7 +79,7 @@ def parse(argv: list[str] | None) -> argparse.Namespace:
     add("--others", type=_number(float, 0.001), help="for the others (default: a third of that)")
     add("--memory", type=_number(int, 0), default=8192, help="MB for a run, 0: no limit")
     add("--only", metavar="PATTERN", help="rows whose name matches; no report")
-    add("--again", metavar="PATTERN", help="measure such rows, and --jobs, into what there is")
+    add("--again", metavar="PATTERN", help="measure such rows, --jobs, --maps into what there is")
     add("--quick", action="store_true", help="the smallest rows, once; no report")
     add("--large", action="store_true", help="larger rows too")
     add("--maps", type=_number(int, 0), help=f"maps to a file, 0: none (default: {MAPS:,})")
@@ -167,7 +167,8 @@ def run(args: argparse.Namespace) -> int:
             new, document = document, _known(file)
             again = [row.name for row in chosen]
             about = {key: new[key] for key in ("machine", "versions")}
-            document["again"].append(about | {"rows": again, "limit": plan.limit})
+            also = {"limit": plan.limit, "maps": maps, "jobs": args.jobs * whole}
+            document["again"].append(about | {"rows": again} | also)
         begun = time.monotonic()
         try:
             for row in measure.rows(chosen, plan, ways):

@@ -249,10 +249,11 @@ def text(document: dict[str, Any], picture: str) -> str:
 def _again(made: dict[str, Any]) -> str:
     """A later run for some rows."""
     date, load = (made["machine"][key] for key in ("date", "load at the start"))
+    also = ["; and what more processes gain"] if made.get("jobs", True) else []
+    also += [f"; and {made['maps']:,} maps to a file"] if made.get("maps") else []
     return (
         f"Measured again on {date}, at a load of {load}, cut after {made['limit']:g} s, "
-        f"with topomap {made['versions']['topomap']}: {'; '.join(made['rows'])}; and what more "
-        "processes gain.\n"
+        f"with topomap {made['versions']['topomap']}: {'; '.join(made['rows'])}{''.join(also)}.\n"
     )
 
 
