@@ -4,9 +4,9 @@ A map of genus 0 is drawn without crossings; of one of higher genus a planar par
 other links as stubs at both ends. Around each place the gateways leave in their order, clockwise
 as the agent turns. If all links can be straight and in the directions of one compass, they are.
 Else the drawing is a mesh of triangles: places, bends of links, and in each face a ring of
-corners round a centre. A drawing of Tutte's (How to draw a graph, 1963) is a start in which no
-triangle is folded; it is bent towards a good shape by steps that fold none, so nothing
-comes to cross and every rotation stays right.
+corners round a centre. It starts from a drawing on a grid, in which no triangle is folded, and
+is bent towards a good shape by steps that fold none, so nothing comes to cross and every
+rotation stays right.
 """
 
 import random
