@@ -94,7 +94,6 @@ def no_two_cross(world, lines):
     for (g, n, (a, b)), (h, m, (c, d)) in combinations(segments, 2):
         near = (g == h and abs(n - m) < 2) or {tuple(a), tuple(b)} & {tuple(c), tuple(d)}
         assert near or not cross(a, b, c, d), (g, h)
-    return True
 
 
 def check(scene):

@@ -14,7 +14,6 @@ from topomap.errors import BAD_INPUT, DONE, INTERRUPTED, PARTIAL, InputError, sa
 from topomap.experience import LARGEST
 from topomap.solver import FORMS, OPTIMIZING, PARTS, PRUNING
 
-DRAWN_PARTS = ("planar", "perpendicular")
 STATUS = """\
 exit status: 0 done; 1 the answer is no (the table differs, no map, an unsound map);
 2 bad input or usage; 3 partial (a limit, a time-out, no memory left); 130 interrupted"""
@@ -220,7 +219,8 @@ def _environment(kinds: Any, kind: str, common: Parser, help: str, example: str)
     return added
 
 
-def _add_query(command: Parser, parts: Iterable[str], horizon: bool = True) -> None:
+def _add_asked(command: Parser, parts: Iterable[str], horizon: bool = True) -> None:
+    """Which maps are asked for, and how long."""
     add = command.add_argument
     for part in parts:
         add(f"--{part}", action="store_true", help=PARTS[part])
@@ -228,6 +228,11 @@ def _add_query(command: Parser, parts: Iterable[str], horizon: bool = True) -> N
     if horizon:
         add("--horizon", type=_number(int, 0), metavar="T", help="cut the experience after step T")
     add("--timeout", type=_number(float, 0.001), metavar="S", help="stop after S seconds")
+
+
+def _add_query(command: Parser, parts: Iterable[str], horizon: bool = True) -> None:
+    _add_asked(command, parts, horizon)
+    add = command.add_argument
     add("--json", action="store_true", help="write JSON")
     add("-o", "--output", metavar="FILE", help="file to write (default: stdout)")
 
@@ -439,15 +444,11 @@ def _add_scene(command: Parser) -> None:
     add(
         "file",
         metavar="INSTANCE|MAPS.json",
-        help="an instance, of which the optimal maps are shown, or the best so far; or maps, from "
-        "topomap solve --json",
+        help="an instance, of which the optimal maps are shown, or the best so far, with what "
+        "is asked for below; or maps, from topomap solve --json",
     )
     add("--map", type=_number(int, 1), metavar="N", help="the N-th of the maps (default: 1)")
-    for part in DRAWN_PARTS:
-        add(f"--{part}", action="store_true", help=f"of an instance: {PARTS[part]}")
-    add("--bound", type=_number(int, 1), metavar="B", help="of an instance: at most B places")
-    add("--horizon", type=_number(int, 0), metavar="T", help="of an instance: up to step T")
-    add("--timeout", type=_number(float, 0.001), metavar="S", help="stop after S seconds")
+    _add_asked(command, PRUNING)
 
 
 def _add_draw(group: Any) -> None:

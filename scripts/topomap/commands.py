@@ -165,10 +165,10 @@ def _solve_one(
         if fault and candidate and not report.count:
             report.add(candidate)
         report.end(fault)
-    return _status(fault, bool(report.count))
+    return exit_status(fault, bool(report.count))
 
 
-def _status(fault: str | None, yes: bool) -> int:
+def exit_status(fault: str | None, yes: bool) -> int:
     """The exit status of an answer: partial, for that reason, or else yes or no."""
     if fault:
         return INTERRUPTED if fault == INTERRUPT else PARTIAL
@@ -315,7 +315,7 @@ def check(args: argparse.Namespace) -> int:
             if short:
                 line += f"; {short} of part of the {experience.steps} steps"
             out.write(line + (f"; partial: {fault}\n" if fault else "\n"))
-    return _status(fault, not unsound)
+    return exit_status(fault, not unsound)
 
 
 def count(args: argparse.Namespace) -> int:
@@ -335,7 +335,7 @@ def count(args: argparse.Namespace) -> int:
             fault = str(stop) or MEMORY
         _write_figures(args, out, figures, fault)
         journal.complete = not fault
-    return _status(fault, bool(figures["final"]))
+    return exit_status(fault, bool(figures["final"]))
 
 
 def search_tree(args: argparse.Namespace) -> int:
@@ -362,7 +362,7 @@ def search_tree(args: argparse.Namespace) -> int:
             figures = dict.fromkeys(KEYS) | {"per_step": tally.per_step[: max(0, whole)]}
             note = ""
         _write_figures(args, out, figures, fault, note)
-    return _status(fault, bool(tally.per_step[-1]))
+    return exit_status(fault, bool(tally.per_step[-1]))
 
 
 def _best_first(args: argparse.Namespace, experience: Experience, query: Query) -> int:
@@ -380,7 +380,7 @@ def _best_first(args: argparse.Namespace, experience: Experience, query: Query) 
         except STOPS as stop:
             fault = str(stop) or MEMORY
         report.end(fault, nodes=nodes)
-    return _status(fault, bool(report.count))
+    return exit_status(fault, bool(report.count))
 
 
 def _write_figures(
@@ -428,7 +428,7 @@ def branching_nodes(args: argparse.Namespace) -> int:
             out.write(branching.text(summary.totals))
             if fault:
                 out.write(f"partial: {fault}\n")
-    return _status(fault, summary.holds)
+    return exit_status(fault, summary.holds)
 
 
 def table(args: argparse.Namespace) -> int:
@@ -463,7 +463,7 @@ def table(args: argparse.Namespace) -> int:
     different = [cell for row in rows for cell in figure4.differences(row)]
     if args.json:
         print(json.dumps({"rows": rows, "complete": not fault, "fault": fault}))
-        return _status(fault, not different)
+        return exit_status(fault, not different)
     if rows:
         print(figure4.text(rows))
     for cell in different:
@@ -472,7 +472,7 @@ def table(args: argparse.Namespace) -> int:
         print(f"partial: {fault}; {len(rows)} of {columns} columns")
     elif not different:
         print(beyond.VERDICT if args.beyond else "Every figure is the paper's.")
-    return _status(fault, not different)
+    return exit_status(fault, not different)
 
 
 def family(args: argparse.Namespace) -> int:

@@ -12,13 +12,13 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
-from topomap import branching, draw, figure4, search, solver
+from topomap import branching, draw, figure4, scenes, search, solver
 from topomap.environment import grid
 from topomap.experience import Experience, read
 from topomap.generate import instance
 from topomap.layout import Points
 from topomap.scenes import Scene
-from topomap.solver import Query, Watch
+from topomap.solver import Query, Stopped, Watch
 
 WALKS = ("#c2332d", "#2f7fc1", "#2e7d4f", "#e07b00", "#7a4fa3")
 BLUE, ORANGE = "#2f7fc1", "#e07b00"
@@ -53,11 +53,11 @@ def maps(
 
 
 def best(experience: Experience, watch: Watch, *parts: str) -> list[Scene]:
-    """The optimal maps, or the best so far."""
-    query = Query(frozenset(parts))
-    found = solver.best(experience, query, watch, solver.hypotheses)
-    proved = sorted(one.at for one in found if one and one.proved)
-    return [Scene(experience.map_of(at), at, "") for at in proved]
+    """The optimal maps, or the best so far. Raises Stopped."""
+    found, fault = scenes.best(experience, "", Query(frozenset(parts)), watch)
+    if fault:
+        raise Stopped(fault)
+    return found
 
 
 def titled(scene: Scene, caption: str) -> Scene:

@@ -4,10 +4,11 @@ import argparse
 from pathlib import Path
 
 from topomap import scenes
-from topomap.errors import DONE, INTERRUPTED, NO, PARTIAL, InputError, say
+from topomap.commands import exit_status
+from topomap.errors import DONE, INTERRUPTED, InputError, say
 from topomap.files import output
 from topomap.scenes import Scene
-from topomap.solver import INTERRUPT, PARTS, Query, Stopped, Watch
+from topomap.solver import PARTS, Query, Stopped, Watch
 
 FORMATS = ("svg", "png", "pdf")
 
@@ -38,8 +39,7 @@ def _scene(args: argparse.Namespace) -> tuple[Scene | None, int]:
     number = args.map or 1
     if found and number > len(found):
         raise InputError(f"{args.file}: it has {len(found)} maps, there is no map {number}")
-    status = (INTERRUPTED if fault == INTERRUPT else PARTIAL) if fault else DONE if found else NO
-    return (found[number - 1] if found else None), status
+    return (found[number - 1] if found else None), exit_status(fault, bool(found))
 
 
 def figures(args: argparse.Namespace) -> int:

@@ -70,17 +70,20 @@ def read(path: str, query: Query, watch: Watch) -> tuple[list[Scene], str | None
     content = text(path, maps.MOST_BYTES)
     if content.lstrip()[:1] in ("{", "["):
         return [scene for document in maps.read(path) for scene in _of_document(document)], None
-    return _best(parse(content, path), path, query, watch)
+    return best(parse(content, path), path, query, watch)
 
 
-def _best(
+def best(
     experience: Experience, name: str, query: Query, watch: Watch
 ) -> tuple[list[Scene], str | None]:
+    """The optimal maps, or the best so far, in order; and why they may not be all, if so."""
     found: list[Found] = []
     fault = None
     try:
         for one in filter(None, solver.best(experience, query, watch, solver.hypotheses)):
-            found = [*found, one] if one.proved and found and found[0].proved else [one]
+            if not (one.proved and found and found[0].proved):  # better than those before
+                found.clear()
+            found.append(one)
     except (Stopped, MemoryError) as stop:
         fault = str(stop) or MEMORY
     found.sort(key=lambda one: one.at)
