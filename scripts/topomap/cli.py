@@ -83,6 +83,7 @@ def _parser() -> Parser:
     _add_table(group)
     _add_family(group)
     _add_draw(group)
+    _add_show(group)
     return parser
 
 
@@ -464,3 +465,16 @@ def _add_draw(group: Any) -> None:
     command.add_argument(
         "-o", "--output", required=True, metavar="FILE", help="FILE.svg, FILE.png or FILE.pdf"
     )
+
+
+def _add_show(group: Any) -> None:
+    command = _command(
+        group,
+        "show",
+        pictures.show,
+        "print a map in the lines of a terminal, then in words",
+        """\
+  topomap show instances/grid-4x4-snake.lp --perpendicular
+  topomap show maps.json --map 3 | less -RS""",
+    )
+    _add_scene(command)

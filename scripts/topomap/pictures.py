@@ -1,6 +1,9 @@
 """The subcommands that show maps, and the exit status each ends with."""
 
 import argparse
+import os
+import shutil
+import sys
 from pathlib import Path
 
 from topomap import scenes
@@ -26,6 +29,28 @@ def draw(args: argparse.Namespace) -> int:
 
 
 FORMATS = ("svg", "png", "pdf")
+
+
+def show(args: argparse.Namespace) -> int:
+    """Print a map."""
+    scene, status = _scene(args)
+    if scene is None:
+        return status
+    from topomap import terminal  # scipy, too
+
+    columns = shutil.get_terminal_size().columns
+    coloured = sys.stdout.isatty() and os.environ.get("TERM") != "dumb"
+    coloured &= not os.environ.get("NO_COLOR")
+    text = terminal.text(scene, max(LEAST, min(columns, MOST)), coloured)
+    try:
+        "─│╴⠿→".encode(getattr(sys.stdout, "encoding", None) or "utf-8")
+    except UnicodeEncodeError:
+        text = text.translate(terminal.ASCII)
+    sys.stdout.write(text)
+    return status
+
+
+LEAST, MOST = 20, 100  # columns of a terminal
 
 
 def _scene(args: argparse.Namespace) -> tuple[Scene | None, int]:

@@ -10,7 +10,7 @@ import networkx as nx
 
 from topomap import maps, solver
 from topomap.errors import InputError
-from topomap.experience import MOST_SLOTS, Experience, parse
+from topomap.experience import LARGEST, MOST_SLOTS, Experience, parse
 from topomap.files import text
 from topomap.solver import MEMORY, Found, Query, Stopped, Watch
 from topomap.topology import Gateway, TopologicalMap
@@ -100,6 +100,8 @@ def _of_document(document: maps.Document) -> list[Scene]:
         at = [(place, slot) for _, place, slot in sorted(entry["at"])]
         if any(world.links.get(b, (None,))[0] != a[0] for a, b in pairwise(at)):
             raise InputError(f"{where}: at goes by links that are not there")
+        if at and at[0] not in world.gateways():
+            raise InputError(f"{where}: at begins at a gateway that is not there")
         kind = str(document.claims.get("kind") or "")
         scenes.append(Scene(world, at, name, number, len(document.maps), kind))
     return scenes
@@ -120,7 +122,9 @@ def world_of(slots: int, entry: dict[str, Any], where: str) -> TopologicalMap:
         pairs = [tuple((int(p), int(s)) for p, s in link) for link in entry["links"]]
         ends = [end for link in pairs for end in link]
         links = {a: b for one, other in pairs for a, b in ((one, other), (other, one))}
-    except (LookupError, TypeError, ValueError):
+        if any(abs(place) > LARGEST for place in stars):
+            raise ValueError
+    except (LookupError, TypeError, ValueError, OverflowError):
         raise InputError(f"{where}: places or links are not as solve --json writes them") from None
     if not stars or len(stars) > MOST_PLACES:
         raise InputError(f"{where}: {len(stars)} places; a picture has 1 to {MOST_PLACES}")
