@@ -6,7 +6,7 @@ import shutil
 import sys
 from pathlib import Path
 
-from topomap import scenes
+from topomap import exports, scenes
 from topomap.errors import DONE, INTERRUPTED, PARTIAL, InputError, say
 from topomap.files import output
 from topomap.scenes import Scene
@@ -48,6 +48,24 @@ def show(args: argparse.Namespace) -> int:
         text = text.translate(terminal.ASCII)
     sys.stdout.write(text)
     return status
+
+
+def export(args: argparse.Namespace) -> int:
+    """Write a map for other tools."""
+    scene, status = _scene(args)
+    if scene is None:
+        return status
+    with output(args.output) as file:
+        file.write(exports.FORMATS[args.format](scene))
+    return status
+
+
+def import_(args: argparse.Namespace) -> int:
+    """Read a map that ``export`` wrote, and write it as ``solve --json`` does."""
+    content = exports.read(args.file)
+    with output(args.output) as file:
+        file.write(content)
+    return DONE
 
 
 LEAST, MOST = 20, 100  # columns of a terminal

@@ -1,6 +1,6 @@
 """Maps to be shown: the best ones of an instance, or those in a file of maps."""
 
-from collections import defaultdict
+from collections import Counter, defaultdict
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
@@ -66,7 +66,7 @@ def read(path: str, query: Query, watch: Watch) -> tuple[list[Scene], str | None
     """
     content = text(path, maps.MOST_BYTES)
     if content.lstrip()[:1] in ("{", "["):
-        return [scene for document in maps.read(path) for scene in _of_document(document)], None
+        return [scene for document in maps.read(path) for scene in of_document(document)], None
     return _best(parse(content, path), path, query, watch)
 
 
@@ -88,7 +88,8 @@ def _best(
     ], fault
 
 
-def _of_document(document: maps.Document) -> list[Scene]:
+def of_document(document: maps.Document) -> list[Scene]:
+    """The maps of a document. Raises InputError if one is none."""
     name = str(document.claims.get("instance") or document.where)
     slots = document.claims.get("slots")
     scenes = []
@@ -130,8 +131,9 @@ def world_of(slots: int, entry: dict[str, Any], where: str) -> TopologicalMap:
         raise InputError(f"{where}: {len(stars)} places; a picture has 1 to {MOST_PLACES}")
     if not 2 <= slots <= MOST_SLOTS or slots % 2:
         raise InputError(f"{where}: slots is not an even number from 2 to {MOST_SLOTS}")
+    times = Counter(ends)
     for place, slot in ends:
-        if slot not in stars.get(place, ()) or ends.count((place, slot)) > 1:
+        if slot not in stars.get(place, ()) or times[place, slot] > 1:
             raise InputError(f"{where}: link at place {place}, gateway {slot}: not there, or two")
     if any(not 0 <= slot < slots for star in stars.values() for slot in star):
         raise InputError(f"{where}: a gateway is not from 0 to {slots - 1}")

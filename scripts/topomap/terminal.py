@@ -19,7 +19,7 @@ import numpy as np
 from topomap.errors import printable
 from topomap.layout import Layout, Points, layout
 from topomap.scenes import Scene
-from topomap.topology import Gateway, Place, TopologicalMap, label
+from topomap.topology import Gateway, Place, TopologicalMap, gid, label
 
 Cell = tuple[int, int]  # row and column
 PLACE, AGENT, LINK, CROSSING, PENDING, SIGN, FACE = "1", "1;33", "", "31", "34", "1;32", "2"
@@ -82,7 +82,7 @@ def text(scene: Scene, width: int, coloured: bool = False) -> str:
     laid = layout(world, world.links[scene.at[1]] if len(scene.at) > 1 else None)
     letters = _letters(laid)
     canvas = boxes(scene, laid, letters) or dots(scene, laid, letters, width)
-    told = [*scene.title.split("\n"), "", *canvas.lines(coloured), ""]
+    told = [*scene.title.rsplit("\n", 1), "", *canvas.lines(coloured), ""]
     for line in words(scene, laid, letters):
         told += textwrap.wrap(printable(line), width, subsequent_indent="    ")
     return "\n".join([*map(printable, told[:2]), *told[2:]]) + "\n"
@@ -266,6 +266,9 @@ def dots(scene: Scene, laid: Layout, letters: dict[Gateway, str], width: int) ->
     passing: dict[Cell, set[Gateway]] = defaultdict(set)
     lines = {gateway: (line - low) * scale for gateway, line in laid.lines.items()}
     for gateway, line in lines.items():
+        other = scene.world.links.get(gateway)
+        if other in lines and gateway not in letters and other < gateway:
+            continue  # drawn from its other end
         for x, y in _along(line):
             at = _cell((x, y))
             passing[at].add(gateway)
@@ -292,10 +295,9 @@ def dots(scene: Scene, laid: Layout, letters: dict[Gateway, str], width: int) ->
     if scene.at:
         line = lines[scene.at[-1]]
         x, y = line[1] - line[0]
-        free = (at for at in map(_cell, _along(line)) if at not in taken)
-        if (at := next(free, None)) is not None:
-            arrow = ARROWS[round(math.atan2(y, x) / (math.pi / 4)) % 8]
-            canvas.put(*at, arrow, AGENT, over=True)
+        arrow = ARROWS[round(math.atan2(y, x) / (math.pi / 4)) % 8]
+        for free in [at for at in map(_cell, _along(line)) if at not in taken][:1]:
+            canvas.put(*free, arrow, AGENT, over=True)
 
     def outline(face: list[Gateway]) -> list[tuple[float, float]]:
         return [(x / 2 - 0.5, 0.5 - y / 4) for x, y in (laid.outline(face) - low) * scale]
@@ -343,8 +345,3 @@ def words(scene: Scene, laid: Layout, letters: dict[Gateway, str]) -> Iterator[s
     signs = ((place, sorted(world.landmarks.get(place, ()))) for place in world.stars)
     told = [f"{label(place)}: {', '.join(those)}" for place, those in signs if those]
     yield from (f"landmarks at {line}" for line in told)
-
-
-def gid(gateway: Gateway) -> str:
-    """A gateway's name, as lines of ``solve`` give it."""
-    return f"{label(gateway[0])}.{gateway[1]}"
