@@ -35,7 +35,7 @@ ASCII = str.maketrans(
 )
 SAME = 0.03  # coordinates that differ less are one row or column; layouts keep lines 0.05 apart
 ACROSS, DOWN, FACING = 5, 3, 5  # free cells between columns, and rows; where two stubs face
-FINEST = 20.0  # dots that a link of length 1 takes
+FINEST = 28.0  # dots that a link of length 1 takes
 LARGER = 1.2, 40  # where numbers fall onto each other: how much, and how often at most
 
 
