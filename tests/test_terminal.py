@@ -1,7 +1,9 @@
 """Maps in a terminal: what is printed is read back, character by character."""
 
 import contextlib
+import itertools
 import json
+import math
 import os
 import pty
 import random
@@ -280,7 +282,7 @@ def test_links_that_cross_are_two_stubs_with_one_letter():
 
 
 def test_a_torus_in_dots():
-    scene = walk(grid(3, 3, "torus").map, 200, random.Random(1))
+    scene = walk(grid(2, 3, "torus").map, 200, random.Random(1))
     rows, words = printed(scene)
     crossing = layout(scene.world, scene.world.links[scene.at[1]]).crossing
     assert is_dots(rows)
@@ -349,6 +351,42 @@ DOTTED = [  # maps that are bent, or aslant, of 6, 8, 12 and 4 slots; and how lo
 ]
 
 
+def lies_as_laid_out(rows, scene):
+    """Places lie to each other as in the layout, and the arrow to the agent's place."""
+    laid = layout(scene.world, scene.world.links[scene.at[1]])
+    cells = {
+        int(found[0].strip("[]")): (found.start() + found.end(), -4 * y)
+        for y, row in enumerate(rows)
+        for found in PLACE.finditer(row)
+    }
+    for p, q in itertools.permutations(cells, 2):
+        for axis in (0, 1):
+            if laid.places[q][axis] - laid.places[p][axis] > 0.6:
+                assert cells[q][axis] > cells[p][axis]
+    ((x, y, arrow),) = [
+        (2 * x + 1, -4 * y, c)
+        for y, row in enumerate(rows)
+        for x, c in enumerate(row)
+        if c in ARROWS
+    ]
+    place, _ = scene.at[-1]
+    out = laid.lines[scene.at[-1]][1] - laid.places[place]
+    angle = 2 * math.pi * ARROWS.index(arrow) / 8
+    here = cells[place]
+    assert (x - here[0]) * out[0] + (y - here[1]) * out[1] > 0
+    assert math.cos(angle) * out[0] + math.sin(angle) * out[1] > 0.9 * math.hypot(*out)
+
+
+def test_numbers_are_all_there_where_there_is_little_room():
+    scene = walk(lattice("triangles", 4, 6).map, 3000, random.Random(0))
+    rows, _ = printed(scene, 20)
+    names = PLACE.findall("\n".join(rows))
+    assert sorted(int(name.strip("[]")) for name in names) == sorted(scene.world.stars)
+    assert max(map(len, rows)) > 20
+    rows, _ = printed(walk(*DOTTED[1], random.Random(0)), 40)
+    assert max(map(len, rows)) <= 40
+
+
 @pytest.mark.parametrize("width", [60, 100])
 @pytest.mark.parametrize("which", range(len(DOTTED)))
 def test_maps_of_dots(which, width):
@@ -359,7 +397,7 @@ def test_maps_of_dots(which, width):
     names = re.findall(r"\[\d+\]|(?<![\d(])\d+(?![\d)])", "\n".join(rows))
     assert sorted(int(name.strip("[]")) for name in names) == sorted(scene.world.stars)
     assert [int(name[1:-1]) for name in names if name[0] == "["] == [scene.at[-1][0]]
-    assert sum(c in ARROWS for row in rows for c in row) == 1
+    lies_as_laid_out(rows, scene)
     bare = [FACE.sub(lambda found: " " * len(found[0]), row) for row in rows]
     found, filled = dots_of(bare)
     assert len(parts(found | filled, diagonal=True)) == 1

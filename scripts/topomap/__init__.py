@@ -23,6 +23,8 @@ searches without it, reads answers, checks and compares them.
 ``maps``            maps that anyone made: read, and judged
 ``journal``         long runs go on where they were cut
 ``report``          maps as JSON, and as lines to read
+``terminal``        maps in the lines of a terminal, and in words
+``exports``         maps for other tools: GraphML, JSON, DOT, clingraph
 ``family``          files that list the instances of a batch
 ``files``           inputs within a limit; outputs that are whole or not there
 ``commands``        what each subcommand does

@@ -97,7 +97,7 @@ def read(file: str) -> str:
 
 def _read(file: str, graph: "nx.Graph[Any]") -> str:
     given = graph.graph
-    if graph.is_directed() or not {"slots", "at"} <= set(given):
+    if graph.is_directed() or not isinstance(given, dict) or not {"slots", "at"} <= set(given):
         raise InputError(
             f"{file}: not a map, as topomap export writes it: no slots, or no route at"
         )
