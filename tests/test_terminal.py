@@ -282,7 +282,7 @@ def test_links_that_cross_are_two_stubs_with_one_letter():
 
 
 def test_a_torus_in_dots():
-    scene = walk(grid(2, 3, "torus").map, 200, random.Random(1))
+    scene = walk(grid(3, 3, "torus").map, 200, random.Random(1))
     rows, words = printed(scene)
     crossing = layout(scene.world, scene.world.links[scene.at[1]]).crossing
     assert is_dots(rows)

@@ -477,7 +477,7 @@ def _add_show(group: Any) -> None:
         "print a map in the lines of a terminal, then in words",
         """\
   topomap show instances/grid-4x4-snake.lp --perpendicular
-  topomap show maps.json --map 3 | less -RS""",
+  topomap show maps.json --map 3 | less -S""",
     )
     _add_scene(command)
 
