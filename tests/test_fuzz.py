@@ -20,10 +20,11 @@ from pathlib import Path
 
 import networkx as nx
 import pytest
-from topomap import beyond, cli, figure4, search
+from topomap import beyond, cli, exports, figure4, search
 from topomap.environment import grid
 from topomap.generate import instance
 from topomap.report import Report
+from topomap.scenes import Scene
 from topomap.solver import Query, Watch
 from worlds import random_experience
 
@@ -103,6 +104,10 @@ def made(draw, kind):
         return network(draw)
     if kind == "journal":
         return journal()
+    if kind == "graphml":
+        return exports.graphml(scene())
+    if kind == "node-link":
+        return exports.node_link(scene())
     return draw.choice(
         [
             "# grids\ngrid {2..3} 2 --route {snake,E}  # two by two\n",
@@ -124,6 +129,12 @@ def maps(draw):
     values = [[f"at({t},{p},{s})" for t, (p, s) in enumerate(one.at)] for one in found]
     clingo = {"Solver": "clingo", "Call": [{"Witnesses": [{"Value": atoms} for atoms in values]}]}
     return draw.choice([out.getvalue(), json.dumps(clingo)])
+
+
+def scene():
+    """The map of a grid."""
+    seen = instance(grid(2, 2), "snake")
+    return Scene(seen.experience.map_of(seen.truth), seen.truth, "good.lp", kind="optimal")
 
 
 @functools.cache
@@ -164,6 +175,8 @@ READERS = {  # the calls that read a file, and how to spoil it
         [
             "check good.lp FILE -o out",
             "check good.lp FILE --planar --closed --bound 4 --json -o out",
+            "show FILE",
+            "export FILE --format graphml -o out",
         ],
         (*EDITS, on_values),
     ),
@@ -174,6 +187,8 @@ READERS = {  # the calls that read a file, and how to spoil it
         ],
         EDITS,
     ),
+    "graphml": (["import FILE -o out"], EDITS),
+    "node-link": (["import FILE -o out"], (*EDITS, on_values)),
     "family": (["family FILE -d folder"], EDITS),
     "journal": (["solve three.lp --resume -o maps"], EDITS),
 }

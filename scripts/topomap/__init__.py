@@ -28,6 +28,8 @@ searches without it, reads answers, checks and compares them.
 ``layout``          where places, links and pending gateways are drawn
 ``draw``            pictures of maps
 ``figures``         the paper's figures, from computed answers
+``terminal``        maps in the lines of a terminal, and in words
+``exports``         maps for other tools: GraphML, JSON, DOT, clingraph
 ``family``          files that list the instances of a batch
 ``files``           inputs within a limit; outputs that are whole or not there
 ``commands``        what each subcommand does

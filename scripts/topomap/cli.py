@@ -8,7 +8,7 @@ from collections.abc import Iterable, Sequence
 from functools import cache
 from typing import Any, NoReturn
 
-from topomap import __version__, commands, maps, pictures
+from topomap import __version__, commands, exports, maps, pictures
 from topomap.environment import MOST_STEPS
 from topomap.errors import BAD_INPUT, DONE, INTERRUPTED, PARTIAL, InputError, say
 from topomap.experience import LARGEST
@@ -83,6 +83,9 @@ def _parser() -> Parser:
     _add_family(group)
     _add_draw(group)
     _add_figures(group)
+    _add_show(group)
+    _add_export(group)
+    _add_import(group)
     return parser
 
 
@@ -488,3 +491,47 @@ def _add_figures(group: Any) -> None:
         metavar="DIR",
         help="where they are (default: instances)",
     )
+
+
+def _add_show(group: Any) -> None:
+    command = _command(
+        group,
+        "show",
+        pictures.show,
+        "print a map in the lines of a terminal, then in words",
+        """\
+  topomap show instances/grid-4x4-snake.lp --perpendicular
+  topomap show maps.json --map 3 | less -S""",
+    )
+    _add_scene(command)
+
+
+def _add_export(group: Any) -> None:
+    command = _command(
+        group,
+        "export",
+        pictures.export,
+        "write a map for other tools: GraphML, JSON (node-link), DOT, or facts for clingraph",
+        """\
+  topomap export instances/grid-4x4-snake.lp --map 2 --format graphml -o map.graphml
+  topomap export maps.json --format dot | neato -n2 -Tsvg -o map.svg
+  topomap export maps.json --format clingraph -o map.lp""",
+    )
+    _add_scene(command)
+    command.add_argument("--format", required=True, choices=tuple(exports.FORMATS))
+    command.add_argument("-o", "--output", metavar="FILE", help="file to write (default: stdout)")
+
+
+def _add_import(group: Any) -> None:
+    command = _command(
+        group,
+        "import",
+        pictures.import_,
+        "read a map that export wrote, and write it as solve --json does",
+        """\
+  topomap export instances/grid-4x4-snake.lp --format graphml -o map.graphml
+  topomap import map.graphml -o maps.json
+  topomap check instances/grid-4x4-snake.lp maps.json""",
+    )
+    command.add_argument("file", metavar="FILE.graphml|FILE.json")
+    command.add_argument("-o", "--output", metavar="FILE", help="file to write (default: stdout)")

@@ -14,7 +14,7 @@ from matplotlib.path import Path as Outline
 
 from topomap.layout import Layout, Points, layout
 from topomap.scenes import Scene
-from topomap.topology import Gateway, Place, TopologicalMap, label
+from topomap.topology import Gateway, Place, TopologicalMap, gid, label
 
 INK, LINK, CROSSING, PENDING = "#1b1b1b", "#3d4a57", "#c2332d", "#2f7fc1"
 AGENT, SIGN, SIGNED, STEP = "#e07b00", "#2e7d4f", "#e7f5ea", "#5c6670"
@@ -99,11 +99,6 @@ def _draw_line(
     elif gateway < world.links[gateway]:
         name += "-to-" + gid(world.links[gateway])
         axes.plot(*line.T, color=LINK, lw=2, solid_joinstyle="round", gid=f"link-{name}")
-
-
-def gid(gateway: Gateway) -> str:
-    """A gateway's name in a picture."""
-    return f"{label(gateway[0])}.{gateway[1]}"
 
 
 def _draw_crossing(axes: Axes, laid: Layout, out: Gateway, end: Gateway) -> Points:

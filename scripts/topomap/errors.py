@@ -15,8 +15,12 @@ def of_file(path: object, error: OSError) -> InputError:
     return InputError(f"{path}: {(error.strerror or str(error)).lower()}")
 
 
+def printable(text: str) -> str:
+    """The text in one line, what a terminal would obey spelt out."""
+    return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in text)
+
+
 def say(message: str) -> None:
     """A message on stderr: one line, whatever names are in it; lost if it cannot be written."""
-    line = "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in message)
     with contextlib.suppress(OSError):
-        print(line, file=sys.stderr, flush=True)
+        print(printable(message), file=sys.stderr, flush=True)

@@ -64,12 +64,13 @@ def read(path: str, most: int = MOST_BYTES) -> list[Document]:
         raise InputError(f"{path}: results: no list")
     many = len(documents) > 1
     return [
-        _document(f"{path}: result {number}" if many else path, document)
-        for number, document in enumerate(documents, 1)
+        document(f"{path}: result {number}" if many else path, one)
+        for number, one in enumerate(documents, 1)
     ]
 
 
-def _document(where: str, data: Any) -> Document:
+def document(where: str, data: Any) -> Document:
+    """The maps in what ``solve --json`` writes. Raises InputError, one line."""
     if isinstance(data, list):
         data = {"maps": data}
     if isinstance(data, dict) and "at" in data:

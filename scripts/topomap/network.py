@@ -32,7 +32,7 @@ def load(file: str | Path, slots: int, north: float) -> tuple[Environment, list[
         raise InputError(f"{file}: {slots} slots: they must be even, from 2 to {MOST_SLOTS}")
     if not math.isfinite(north):
         raise InputError(f"{file}: north {north}: it must be a finite number of degrees")
-    graph = _read(file)
+    graph = read_graphml(file, data(file))
     loops = list(nx.selfloop_edges(graph))
     graph.remove_edges_from(loops)
     lone = list(nx.isolates(graph))
@@ -78,13 +78,13 @@ def load(file: str | Path, slots: int, north: float) -> tuple[Environment, list[
     return Environment(path.stem, call, world, notes=notes), told
 
 
-def _read(file: str | Path) -> "nx.Graph[Any]":
-    content = data(file)
+def read_graphml(file: str | Path, content: bytes, node_type: type = str) -> "nx.Graph[Any]":
+    """The graph in the content of a GraphML file. Raises InputError, one line."""
     try:
         fromstring(content, forbid_dtd=True)
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
-            graph: nx.Graph[Any] = nx.read_graphml(io.BytesIO(content))
+            graph: nx.Graph[Any] = nx.read_graphml(io.BytesIO(content), node_type)
     except DefusedXmlException:
         raise InputError(
             f"{file}: it declares a document type or entities, which is refused"

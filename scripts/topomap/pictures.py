@@ -1,9 +1,12 @@
 """The subcommands that show maps, and the exit status each ends with."""
 
 import argparse
+import os
+import shutil
+import sys
 from pathlib import Path
 
-from topomap import scenes
+from topomap import exports, scenes
 from topomap.commands import exit_status
 from topomap.errors import DONE, INTERRUPTED, InputError, say
 from topomap.files import output
@@ -25,6 +28,46 @@ def draw(args: argparse.Namespace) -> int:
         with output(args.output, binary=True) as file:
             draw.save(draw.picture([scene]), file, form)
     return status
+
+
+def show(args: argparse.Namespace) -> int:
+    """Print a map."""
+    scene, status = _scene(args)
+    if scene is None:
+        return status
+    from topomap import terminal  # scipy, too
+
+    columns = shutil.get_terminal_size().columns
+    coloured = sys.stdout.isatty() and os.environ.get("TERM") != "dumb"
+    coloured &= not os.environ.get("NO_COLOR")
+    text = terminal.text(scene, max(LEAST, min(columns, MOST)), coloured)
+    try:
+        "─│╴⠿→".encode(getattr(sys.stdout, "encoding", None) or "utf-8")
+    except UnicodeEncodeError:
+        text = text.translate(terminal.ASCII)
+    sys.stdout.write(text)
+    return status
+
+
+def export(args: argparse.Namespace) -> int:
+    """Write a map for other tools."""
+    scene, status = _scene(args)
+    if scene is None:
+        return status
+    with output(args.output) as file:
+        file.write(exports.FORMATS[args.format](scene))
+    return status
+
+
+def import_(args: argparse.Namespace) -> int:
+    """Read a map that ``export`` wrote, and write it as ``solve --json`` does."""
+    content = exports.read(args.file)
+    with output(args.output) as file:
+        file.write(content)
+    return DONE
+
+
+LEAST, MOST = 20, 100  # columns of a terminal
 
 
 def _scene(args: argparse.Namespace) -> tuple[Scene | None, int]:

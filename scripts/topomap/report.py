@@ -1,20 +1,21 @@
 """Answers of ``solve``: maps as JSON, or as lines to read."""
 
 import json
+from collections.abc import Sequence
 from typing import IO, Any
 
 from topomap.experience import Experience
 from topomap.solver import Found, Query
-from topomap.topology import TopologicalMap
+from topomap.topology import Gateway, TopologicalMap
 
 
-def map_json(experience: Experience, found: Found) -> dict[str, Any]:
-    """A hypothesis as JSON. A gateway or dstate is ``[place, slot]``; a link its two
-    gateways; a path its dstates in order, with the slot of its heading; a face the
-    gateways its walk leaves by (the paper's next); ``dstate`` where the agent is."""
-    world = experience.map_of(found.at)
+def map_json(world: TopologicalMap, at: Sequence[Gateway]) -> dict[str, Any]:
+    """A hypothesis as JSON, from its map and the dstate after each step. A gateway or dstate
+    is ``[place, slot]``; a link its two gateways; a path its dstates in order, with the slot
+    of its heading; a face the gateways its walk leaves by (the paper's next); ``dstate``
+    where the agent is."""
     return {
-        "at": [[step, place, slot] for step, (place, slot) in enumerate(found.at)],
+        "at": [[step, place, slot] for step, (place, slot) in enumerate(at)],
         "places": [
             {"place": place, "gateways": sorted(star), "landmarks": sorted(world.landmarks[place])}
             for place, star in world.stars.items()
@@ -24,7 +25,7 @@ def map_json(experience: Experience, found: Found) -> dict[str, Any]:
         "faces": world.faces(),
         "genus": world.genus(),
         "pending": world.pending(),
-        "dstate": found.at[-1],
+        "dstate": at[-1],
     }
 
 
@@ -76,7 +77,7 @@ class Report:
             real = self.experience.map_of(found.at).isomorphic(self.truth)
             self.real += real
         if self.as_json:
-            answer = map_json(self.experience, found)
+            answer = map_json(self.experience.map_of(found.at), found.at)
             if self.truth:
                 answer["real"] = real
             self.out.write((",\n" if self.count > 1 else "\n") + json.dumps(answer))

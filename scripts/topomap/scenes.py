@@ -1,6 +1,6 @@
 """Maps to be shown: the best ones of an instance, or those in a file of maps."""
 
-from collections import defaultdict
+from collections import Counter, defaultdict
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
@@ -10,7 +10,7 @@ import networkx as nx
 
 from topomap import maps, solver
 from topomap.errors import InputError
-from topomap.experience import MOST_SLOTS, Experience, parse
+from topomap.experience import LARGEST, MOST_SLOTS, Experience, parse
 from topomap.files import text
 from topomap.solver import MEMORY, Found, Query, Stopped, Watch
 from topomap.topology import Gateway, TopologicalMap
@@ -69,7 +69,7 @@ def read(path: str, query: Query, watch: Watch) -> tuple[list[Scene], str | None
     """
     content = text(path, maps.MOST_BYTES)
     if content.lstrip()[:1] in ("{", "["):
-        return [scene for document in maps.read(path) for scene in _of_document(document)], None
+        return [scene for document in maps.read(path) for scene in of_document(document)], None
     return best(parse(content, path), path, query, watch)
 
 
@@ -94,7 +94,8 @@ def best(
     ], fault
 
 
-def _of_document(document: maps.Document) -> list[Scene]:
+def of_document(document: maps.Document) -> list[Scene]:
+    """The maps of a document. Raises InputError if one is none."""
     name = str(document.claims.get("instance") or document.where)
     slots = document.claims.get("slots")
     scenes = []
@@ -106,6 +107,8 @@ def _of_document(document: maps.Document) -> list[Scene]:
         at = [(place, slot) for _, place, slot in sorted(entry["at"])]
         if any(world.links.get(b, (None,))[0] != a[0] for a, b in pairwise(at)):
             raise InputError(f"{where}: at goes by links that are not there")
+        if at and at[0] not in world.gateways():
+            raise InputError(f"{where}: at begins at a gateway that is not there")
         kind = str(document.claims.get("kind") or "")
         scenes.append(Scene(world, at, name, number, len(document.maps), kind))
     return scenes
@@ -126,14 +129,17 @@ def world_of(slots: int, entry: dict[str, Any], where: str) -> TopologicalMap:
         pairs = [tuple((int(p), int(s)) for p, s in link) for link in entry["links"]]
         ends = [end for link in pairs for end in link]
         links = {a: b for one, other in pairs for a, b in ((one, other), (other, one))}
-    except (LookupError, TypeError, ValueError):
+        if any(abs(place) > LARGEST for place in stars):
+            raise ValueError
+    except (LookupError, TypeError, ValueError, OverflowError):
         raise InputError(f"{where}: places or links are not as solve --json writes them") from None
     if not stars or len(stars) > MOST_PLACES:
         raise InputError(f"{where}: {len(stars)} places; a picture has 1 to {MOST_PLACES}")
     if not 2 <= slots <= MOST_SLOTS or slots % 2:
         raise InputError(f"{where}: slots is not an even number from 2 to {MOST_SLOTS}")
+    times = Counter(ends)
     for place, slot in ends:
-        if slot not in stars.get(place, ()) or ends.count((place, slot)) > 1:
+        if slot not in stars.get(place, ()) or times[place, slot] > 1:
             raise InputError(f"{where}: link at place {place}, gateway {slot}: not there, or two")
     if any(not 0 <= slot < slots for star in stars.values() for slot in star):
         raise InputError(f"{where}: a gateway is not from 0 to {slots - 1}")

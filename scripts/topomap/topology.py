@@ -208,3 +208,8 @@ class TopologicalMap:
 def label(place: Place) -> str:
     """A place's name in messages, headers and on the command line."""
     return ",".join(map(str, place)) if isinstance(place, tuple) else str(place)
+
+
+def gid(gateway: Gateway) -> str:
+    """A gateway's name in pictures and lines: ``P.S``."""
+    return f"{label(gateway[0])}.{gateway[1]}"
