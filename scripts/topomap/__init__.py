@@ -23,6 +23,10 @@ searches without it, reads answers, checks and compares them.
 ``maps``            maps that anyone made: read, and judged
 ``journal``         long runs go on where they were cut
 ``report``          maps as JSON, and as lines to read
+``replay``          explorations step by step: what to show, what was refused
+``words``           explorations in words
+``svg``             small pictures for a page
+``page``            the page of an exploration (page.html, page.css, page.js)
 ``family``          files that list the instances of a batch
 ``files``           inputs within a limit; outputs that are whole or not there
 ``commands``        what each subcommand does

@@ -8,7 +8,7 @@ from collections.abc import Iterable, Sequence
 from functools import cache
 from typing import Any, NoReturn
 
-from topomap import __version__, commands, maps, pictures
+from topomap import __version__, commands, maps, page, pictures
 from topomap.environment import MOST_STEPS
 from topomap.errors import BAD_INPUT, DONE, INTERRUPTED, PARTIAL, InputError, say
 from topomap.experience import LARGEST
@@ -83,6 +83,7 @@ def _parser() -> Parser:
     _add_table(group)
     _add_family(group)
     _add_draw(group)
+    _add_report(group)
     return parser
 
 
@@ -464,3 +465,38 @@ def _add_draw(group: Any) -> None:
     command.add_argument(
         "-o", "--output", required=True, metavar="FILE", help="FILE.svg, FILE.png or FILE.pdf"
     )
+
+
+def _add_report(group: Any) -> None:
+    command = _command(
+        group,
+        "report",
+        page.report,
+        "tell all about explorations in one page to be opened in a browser: the log, how many "
+        "hypotheses, what was refused, the best maps, and a replay step by step",
+        """\
+  topomap report instances/grid-3x3-snake.lp -o report.html
+  topomap report instances/grid-4x4-snake.lp --bound 16 --timeout 120 -o report.html""",
+    )
+    add = command.add_argument
+    add("instance", nargs="+", metavar="INSTANCE")
+    for part in DRAWN_PARTS:
+        add(f"--{part}", action="store_true", help=f"of the maps and the replay: {PARTS[part]}")
+    add("--bound", type=_number(int, 1), metavar="B", help="at most B places")
+    add("--horizon", type=_number(int, 0), metavar="T", help="cut the experience after step T")
+    add(
+        "--maps",
+        type=_number(int, 0),
+        default=6,
+        metavar="N",
+        help="draw N of the best maps at most (default: %(default)s)",
+    )
+    add(
+        "--timeout",
+        type=_number(float, 0.001),
+        default=60.0,
+        metavar="S",
+        help="take S seconds for all; what is not counted or drawn by then says so "
+        "(default: %(default)g)",
+    )
+    add("-o", "--output", metavar="FILE", help="file to write (default: stdout)")

@@ -32,6 +32,7 @@ SOFTER = 1e-2, 1e-3, 1e-4  # flatness from which a triangle may be folded, at fi
 UNFOLDED = 1e-5  # flatness that is none: area by the sum of the squared sides
 STIFF = 100.0  # weight of the triangles at first
 WEIGHTS = 10.0, 1.0, 0.1, 0.01, 0.002  # and later
+STEPS = 1500  # of the descent, at most, with each of these
 
 
 @dataclass(frozen=True)
@@ -55,16 +56,16 @@ class Layout:
         return np.concatenate([self.lines[gateway][:-1] for gateway in face])
 
 
-def layout(world: TopologicalMap, ahead: Gateway | None = None) -> Layout:
+def layout(world: TopologicalMap, ahead: Gateway | None = None, steps: int = STEPS) -> Layout:
     """A drawing of a connected map. ``ahead`` is a gateway that is left to the right of the
-    picture (else the first one)."""
+    picture (else the first one); fewer ``steps`` do for a small picture."""
     part = planar_part(world)
     crossing = [(out, end) for out, end in world.edges() if out not in part.links]
     faces, outer = faces_of(part)
     north, fits = compass(part)
     lines = _straight(part, north) if fits else None
     if lines is None:
-        lines = _bent(part, faces, outer)
+        lines = _bent(part, faces, outer, steps)
     first = ahead or next(world.gateways(), None)
     if first is None:
         return Layout({place: np.zeros(2) for place in world.stars}, {}, faces, outer, [])
@@ -380,7 +381,9 @@ class _Shape:
         return float(total), np.stack(slopes, 1), np.asarray(turned, float)
 
 
-def _bent(world: TopologicalMap, faces: list[list[Gateway]], outer: int) -> dict[Gateway, Points]:
+def _bent(
+    world: TopologicalMap, faces: list[list[Gateway]], outer: int, steps: int
+) -> dict[Gateway, Points]:
     """Lines with bends, in a drawing in which no triangle of the mesh is folded."""
     mesh = _Mesh(world, faces, outer)
     shape = _Shape(mesh)
@@ -404,7 +407,7 @@ def _bent(world: TopologicalMap, faces: list[list[Gateway]], outer: int) -> dict
         if shape.flattest(drawing(x)) > UNFOLDED:
             break
     for weight in WEIGHTS:
-        x = _descend(energy(weight), x, 1500)
+        x = _descend(energy(weight), x, steps)
     points = drawing(x)
     return {gateway: points[line] for gateway, line in mesh.lines.items()}
 

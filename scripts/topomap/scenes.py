@@ -67,12 +67,13 @@ def read(path: str, query: Query, watch: Watch) -> tuple[list[Scene], str | None
     content = text(path, maps.MOST_BYTES)
     if content.lstrip()[:1] in ("{", "["):
         return [scene for document in maps.read(path) for scene in _of_document(document)], None
-    return _best(parse(content, path), path, query, watch)
+    return best(parse(content, path), path, query, watch)
 
 
-def _best(
+def best(
     experience: Experience, name: str, query: Query, watch: Watch
 ) -> tuple[list[Scene], str | None]:
+    """The optimal maps of an experience, or the best so far, and why they may not be all."""
     found: list[Found] = []
     fault = None
     try:
