@@ -8,8 +8,7 @@ import shlex
 import time
 from collections import defaultdict
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
-from functools import partial
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -39,17 +38,16 @@ def report(args: argparse.Namespace) -> int:
         raise InputError("topomap report: an instance is named twice")
     parts = frozenset(part for part in PARTLY if getattr(args, part))
     query = Query(parts, args.bound, args.horizon)
-    with output(args.output) as out:
-        with Watch(args.timeout) as watch:
-            end = time.monotonic() + args.timeout
-            made = []
-            for number, (path, one) in enumerate(seen):
-                share = (end - time.monotonic()) / (len(seen) - number)
-                cut = one.cut(LARGEST if query.horizon is None else query.horizon)
-                about = Exploration(path, cut, replace(query, horizon=None), args.maps, watch)
-                about.look(max(0.0, share))
-                made.append(about)
-            out.write(_page(args, made))
+    with output(args.output) as out, Watch(args.timeout) as watch:
+        end = time.monotonic() + args.timeout
+        made = []
+        for number, (path, one) in enumerate(seen):
+            share = (end - time.monotonic()) / (len(seen) - number)
+            cut = one.cut(LARGEST if query.horizon is None else query.horizon)
+            about = Exploration(path, cut, replace(query, horizon=None), args.maps, watch)
+            about.look(max(0.0, share))
+            made.append(about)
+        out.write(_page(args, made))
     for about in made:
         for fault in about.faults:
             say(f"{about.name}: partial: {fault}")
@@ -221,21 +219,21 @@ def _about(args: argparse.Namespace, number: int, about: Exploration) -> dict[st
     room = ROOM
     steps = []
     for step, found in reversed(list(enumerate(about.steps))):  # the best maps' are drawn first
-        shown = []
+        shown: list[dict[str, Any]] = []
         for at in found.shown:
             if at in about.shapes and room > 0:
                 shown.append(_shown(about, at, len(shown) + 1, glyphs))
                 room -= shown[-1]["letters"]
         alive = about.alive(step)
-        told = "not counted" if alive is None else words.number(alive, "hypothesis")
-        told = told.replace("hypothesiss", "hypotheses")
         more = None if alive is None else alive - len(shown)
-        steps.append({"alive": told, "shown": shown, "more": more, **log[step]})
+        steps.append({"alive": alive, "shown": shown, "more": more, **log[step]})
     steps.reverse()
     rules = in_force(about.query, seen)
     name = f"Hypotheses after each step of {about.name}, on a logarithmic scale"
     agreed = Agreement([scene.at for scene in about.best], seen)
-    maps = [_map(scene, about.shapes.get(tuple(scene.at)), agreed) for scene in about.best[: args.maps]]
+    maps = [
+        _map(scene, about.shapes.get(tuple(scene.at)), agreed) for scene in about.best[: args.maps]
+    ]
     file = about.name
     return {
         "id": f"i{number}",
@@ -257,7 +255,9 @@ def _about(args: argparse.Namespace, number: int, about: Exploration) -> dict[st
         ),
         "rules": {rule: words.RULES[rule] for rule in rules},
         "enders": [rule for rule in rules if rule in ("view", "landmark", "bound")],
-        "refused": [(step, about.steps[step - 1].alive, about.steps[step]) for step in range(1, last + 1)],
+        "refused": [
+            (step, about.steps[step - 1].alive, about.steps[step]) for step in range(1, last + 1)
+        ],
         "maps": maps,
         "found": len(about.best),
         "kind": about.best[0].kind if about.best else "",
@@ -335,7 +335,9 @@ def _shown(about: Exploration, at: Cube, number: int, glyphs: Glyphs) -> dict[st
         "at": f"at place {place}, gateway {slot}",
         "next": next,
         "ends": not children and step < seen.steps,
-        "begun": f"{'map' if len(begun) == 1 else 'maps'} {words.listed(begun, 4)}" if begun else "",
+        "begun": f"{'map' if len(begun) == 1 else 'maps'} {words.listed(begun, 4)}"
+        if begun
+        else "",
     }
 
 
@@ -373,7 +375,9 @@ class Agreement:
             for places, steps in classes.items()
             if all(len(of[place]) == len(steps) for of, place in zip(visits, places, strict=True))
         }
-        self.differ = [(step, rows) for step in range(len(ats[0]) if ats else 0) if (rows := self._rows(step))]
+        self.differ = [
+            (step, rows) for step in range(len(ats[0]) if ats else 0) if (rows := self._rows(step))
+        ]
 
     def _rows(self, step: int) -> list[tuple[str, str]]:
         """Where the agent is after a step, and in which maps, if not the same in all."""
@@ -394,7 +398,9 @@ class Agreement:
 
     def strange(self, map: int) -> set[Place]:
         """The places of a map that are not the same visits in all maps."""
-        return {place for place, steps in self.visits[map].items() if frozenset(steps) not in self.sure}
+        return {
+            place for place, steps in self.visits[map].items() if frozenset(steps) not in self.sure
+        }
 
     def having(self, map: int, link: Link) -> int:
         """How many of the maps have a link of one of them."""

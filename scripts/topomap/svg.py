@@ -8,6 +8,7 @@ import math
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from html import escape
+from itertools import pairwise
 from typing import Any
 
 from topomap.scenes import Scene
@@ -50,7 +51,10 @@ def drawing(
 
     lines = {gateway: [point(p) for p in line] for gateway, line in laid.lines.items()}
     places = {place: point(p) for place, p in laid.places.items()}
-    xs, ys = zip(*places.values(), *(p for line in lines.values() for p in line), strict=True)
+    points = [*places.values(), *(p for line in lines.values() for p in line)]
+    for out, end in laid.crossing:
+        points += _between(lines[out], lines[end])
+    xs, ys = zip(*points, strict=True)
     corner = min(xs) - MARGIN, min(ys) - MARGIN
     frame = (*corner, max(xs) + MARGIN - corner[0], max(ys) + MARGIN - corner[1])
     filled = []
@@ -82,7 +86,7 @@ def part_of(whole: Drawing, world: TopologicalMap) -> Drawing | None:
 def _stub(line: Line) -> Line:
     """The beginning of a line."""
     kept, left = [line[0]], float(STUB)
-    for (x, y), (u, v) in zip(line, line[1:], strict=False):
+    for (x, y), (u, v) in pairwise(line):
         length = math.dist((x, y), (u, v))
         share = min(1.0, left / length) if length else 1.0
         kept.append((round(x + share * (u - x)), round(y + share * (v - y))))
@@ -101,9 +105,12 @@ def body(
     parts = []
     for number, outline, (x, y) in drawn.faces:
         parts.append(f'<path class="face f{number % 4}" d="{path(outline)}Z"/>')
-        parts.append(f'<text class="number" x="{x}" y="{y}">{number}</text>')
+        parts.append(f'<text class="face" x="{x}" y="{y}">{number}</text>')
     crossing = {end for link in drawn.crossing for end in link}
-    normal, other, pending, ends = [], [], [], []
+    normal: list[str] = []
+    other: list[str] = []
+    pending: list[str] = []
+    ends: list[Point] = []
     for gateway, line in drawn.lines.items():
         end = world.links.get(gateway)
         if end is None:
@@ -150,18 +157,25 @@ def _lines(kind: str, paths: Sequence[str]) -> list[str]:
     return [f'<path class="{kind}" d="{"".join(paths)}"/>'] if paths else []
 
 
-def _curve(out: Line, end: Line) -> str:
-    """From the place of a stub to that of another, leaving them as they do."""
+def _between(out: Line, end: Line) -> Line:
+    """Corners that draw a curve from the end of a stub to that of another, to leave both as they
+    do."""
     (a, b), (d, c) = out[-2:], end[-2:]
     far = math.dist(b, c) / 2.5
 
     def beyond(p: Point, q: Point) -> Point:
         length = math.dist(p, q) or 1.0
-        return tuple(round(q[n] + far * (q[n] - p[n]) / length) for n in (0, 1))  # type: ignore[return-value]
+        x, y = (round(q[axis] + far * (q[axis] - p[axis]) / length) for axis in (0, 1))
+        return x, y
 
-    first, last = beyond(a, b), beyond(d, c)
-    curve = " ".join(f"{x} {y}" for x, y in (first, last, c))
-    return f"{path(out)}C{curve}L{d[0]} {d[1]}"
+    return [beyond(a, b), beyond(d, c)]
+
+
+def _curve(out: Line, end: Line) -> str:
+    """From the place of a stub to that of another."""
+    curve = " ".join(f"{x} {y}" for x, y in (*_between(out, end), end[-1]))
+    back = " ".join(f"{x} {y}" for x, y in reversed(end[:-1]))
+    return f"{path(out)}C{curve}L{back}"
 
 
 def _along(line: Line, steps: Sequence[int]) -> str:
@@ -171,7 +185,7 @@ def _along(line: Line, steps: Sequence[int]) -> str:
     if len(line) % 2:
         x, y = u, v
     text = " ".join(map(str, steps[:4])) + (" …" if len(steps) > 4 else "")
-    return f'<text class="steps" x="{(x + u) // 2}" y="{(y + v) // 2}">{text}</text>'
+    return f'<text class="along" x="{(x + u) // 2}" y="{(y + v) // 2}">{text}</text>'
 
 
 def agent(drawn: Drawing, dstate: Gateway) -> str:
@@ -205,7 +219,10 @@ def view(name: str, slots: int, seen: Collection[int]) -> str:
         x, y = -math.sin(turn), math.cos(turn)
         ways.append([(round(5 * x), round(5 * y)), (round(15 * x), round(15 * y))])
     parts = _lines("link", [path(way) for way in ways])
-    parts += ['<circle class="place" cx="0" cy="0" r="5"/>', '<circle class="agent" cy="14" r="3"/>']
+    parts += [
+        '<circle class="place" cx="0" cy="0" r="5"/>',
+        '<circle class="agent" cy="14" r="3"/>',
+    ]
     return picture(name, (-size, -size, 2 * size, 2 * size), "".join(parts), "view")
 
 

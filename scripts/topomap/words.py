@@ -16,9 +16,9 @@ RULES = {
 }
 
 
-def number(count: int, noun: str) -> str:
+def number(count: int, noun: str, nouns: str | None = None) -> str:
     """So many of them."""
-    return f"{count:,} {noun}{'s' * (count != 1)}"
+    return f"{count:,} {noun if count == 1 else nouns or noun + 's'}"
 
 
 def direction(slot: int, slots: int) -> str:
