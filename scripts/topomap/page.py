@@ -6,7 +6,6 @@ import hashlib
 import platform
 import shlex
 import time
-from collections import defaultdict
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -15,14 +14,15 @@ from typing import Any
 import clingo
 
 from topomap import __version__, experience, scenes, solver, svg, words
+from topomap.agreement import Agreement
 from topomap.errors import DONE, INTERRUPTED, NO, PARTIAL, InputError, say
 from topomap.experience import LARGEST, Experience
 from topomap.files import output
 from topomap.replay import MOST, SHOWN, Step, fate, in_force, replay
 from topomap.scenes import MOST_PLACES, Scene
 from topomap.solver import INTERRUPT, MEMORY, PARTS, Cube, Query, Stopped, Watch
-from topomap.svg import Drawing, Link, part_of
-from topomap.topology import Gateway, Place
+from topomap.svg import Drawing, part_of
+from topomap.topology import Gateway
 
 FOLDER = Path(__file__).parent
 PARTLY = ("planar", "perpendicular")  # the parts that can be asked for
@@ -91,6 +91,7 @@ class Exploration:
 
     def _until(self, what: str, work: Iterator[None]) -> None:
         try:
+            self.watch.tick()
             for _ in work:
                 self.watch.tick()
         except (Stopped, MemoryError) as stop:
@@ -310,10 +311,7 @@ def _shown(about: Exploration, at: Cube, number: int, glyphs: Glyphs) -> dict[st
     scene = Scene(seen.map_of(at), at, about.name)
     known = len(glyphs.names)
     body = svg.body(scene, replace(drawn, faces=()))
-    content = glyphs.use(body)
-    if step:
-        content += _last(drawn, scene, at)
-    content += svg.agent(drawn, at[-1])
+    content = _last(drawn, at) + glyphs.use(body) + svg.agent(drawn, at[-1])
     place, slot = at[-1]
     name = (
         f"After step {step}, hypothesis {number}: {_sizes(scene)}, "
@@ -341,81 +339,15 @@ def _shown(about: Exploration, at: Cube, number: int, glyphs: Glyphs) -> dict[st
     }
 
 
-def _last(drawn: Drawing, scene: Scene, at: Cube) -> str:
-    """The link of the last step, once more."""
-    here = at[-1]
-    for out, end in drawn.crossing:
-        if here in (out, end):
-            return ""
-    return f'<path class="last" d="{svg.path(drawn.lines[here])}"/>'
+def _last(drawn: Drawing, at: Cube) -> str:
+    """The link of the last step, to lie under the map."""
+    if len(at) == 1 or any(at[-1] in link for link in drawn.crossing):
+        return ""
+    return f'<path class="last" d="{svg.path(drawn.lines[at[-1]])}"/>'
 
 
 def _sizes(scene: Scene) -> str:
     return scene.title.splitlines()[1]
-
-
-class Agreement:
-    """What maps agree and differ on. A place goes by the steps after which the agent is there;
-    a gateway (T,S) is that S slots clockwise of the one where it stands after step T."""
-
-    def __init__(self, ats: Sequence[Sequence[Gateway]], seen: Experience):
-        self.ats, self.seen = ats, seen
-        self.links = [seen.map_of(tuple(at)).links for at in ats]
-        classes: dict[tuple[Place, ...], list[int]] = defaultdict(list)
-        for step in range(len(ats[0]) if ats else 0):
-            classes[tuple(at[step][0] for at in ats)].append(step)
-        visits = [defaultdict(list) for _ in ats]  # type: list[defaultdict[Place, list[int]]]
-        for at, of in zip(ats, visits, strict=True):
-            for step, (place, _) in enumerate(at):
-                of[place].append(step)
-        self.visits = visits
-        self.one = [steps for steps in classes.values() if len(steps) > 1]
-        self.sure = {
-            frozenset(steps)
-            for places, steps in classes.items()
-            if all(len(of[place]) == len(steps) for of, place in zip(visits, places, strict=True))
-        }
-        self.differ = [
-            (step, rows) for step in range(len(ats[0]) if ats else 0) if (rows := self._rows(step))
-        ]
-
-    def _rows(self, step: int) -> list[tuple[str, str]]:
-        """Where the agent is after a step, and in which maps, if not the same in all."""
-        told: dict[str, list[int]] = defaultdict(list)
-        for number, (at, of) in enumerate(zip(self.ats, self.visits, strict=True), 1):
-            place, slot = at[step]
-            before = [earlier for earlier in of[place] if earlier < step]
-            if before:
-                turned = (slot - at[before[0]][1]) % self.seen.slots
-                where = f"where it was after {_steps(before)}"
-                where += f", gateway {turned} from that of step {before[0]}"
-            else:
-                where = "at a new place"
-            told[where].append(number)
-        if len(told) == 1:
-            return []
-        return [(where, words.listed(numbers)) for where, numbers in told.items()]
-
-    def strange(self, map: int) -> set[Place]:
-        """The places of a map that are not the same visits in all maps."""
-        return {
-            place for place, steps in self.visits[map].items() if frozenset(steps) not in self.sure
-        }
-
-    def having(self, map: int, link: Link) -> int:
-        """How many of the maps have a link of one of them."""
-        gateways = [(place, slot) for place, slot in link]
-        total = 0
-        for at, links in zip(self.ats, self.links, strict=True):
-            out, end = (
-                (at[step][0], (at[step][1] + slot) % self.seen.slots) for step, slot in gateways
-            )
-            total += links.get(out) == end
-        return total
-
-
-def _steps(steps: Sequence[int]) -> str:
-    return f"step{'s' * (len(steps) > 1)} {words.listed(steps)}"
 
 
 def _map(scene: Scene, drawn: Drawing | None, agreed: Agreement) -> dict[str, Any]:
@@ -428,7 +360,7 @@ def _map(scene: Scene, drawn: Drawing | None, agreed: Agreement) -> dict[str, An
     links = []
     for out, end in world.edges():
         along = sorted(steps.get(out, []) + steps.get(end, []))
-        links.append((out, end, along, agreed.having(number - 1, (out, end))))
+        links.append((out, end, along, agreed.having(out, end)))
     apart = [(out, end) for out, end, _, having in links if having < scene.many]
     apart += [(end, out) for out, end in apart]
     name = f"Map {number} of {scene.many}, {scene.kind}: {_sizes(scene)}"

@@ -228,7 +228,7 @@ def view(name: str, slots: int, seen: Collection[int]) -> str:
 
 def plot(name: str, series: Mapping[str, Sequence[int | None]]) -> str:
     """Numbers by step, on a log scale; what is None is left out."""
-    width, height, left, bottom, top = 720, 300, 56, 44, 34
+    width, height, left, bottom, top = 720, 300, 84, 44, 34
     last = max(1, max(len(values) for values in series.values()) - 1)
     most = max([v for values in series.values() for v in values if v], default=1)
     decades = max(1, math.ceil(math.log10(most)))
