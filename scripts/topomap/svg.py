@@ -16,7 +16,7 @@ from topomap.topology import Gateway, Place, TopologicalMap, label
 
 UNIT = 60  # a link of length 1
 RADIUS = 11  # of a place
-STUB = 22
+STUB = 22  # of a pending gateway, at most
 MARGIN = 20
 LONGEST = 16  # letters of a landmark in a picture
 
@@ -50,6 +50,7 @@ def drawing(
         return round(UNIT * float(place[0])), round(-UNIT * float(place[1]))
 
     lines = {gateway: [point(p) for p in line] for gateway, line in laid.lines.items()}
+    lines = {g: line if g in world.links else _stub(line) for g, line in lines.items()}
     places = {place: point(p) for place, p in laid.places.items()}
     points = [*places.values(), *(p for line in lines.values() for p in line)]
     for out, end in laid.crossing:
