@@ -26,7 +26,7 @@ from topomap.topology import Gateway
 
 FOLDER = Path(__file__).parent
 PARTLY = ("planar", "perpendicular")  # the parts that can be asked for
-ROUGH = 50  # steps of the descent, for a small picture
+ROUGH = 80  # steps of the descent, for a small picture
 SMALL = 100  # places in a small picture, at most
 ROOM = 2_000_000  # letters that small pictures of one exploration take, about
 

@@ -14,7 +14,7 @@ from typing import Any
 from topomap.scenes import Scene
 from topomap.topology import Gateway, Place, TopologicalMap, label
 
-UNIT = 60  # a link of length 1
+UNIT = 60  # the middle one of the links
 RADIUS = 11  # of a place
 STUB = 22  # of a pending gateway, at most
 MARGIN = 20
@@ -46,8 +46,15 @@ def drawing(
 
     laid = layout.layout(world, ahead, layout.STEPS if steps is None else steps)
 
+    lengths = sorted(
+        sum(math.dist(p, q) for p, q in pairwise(laid.lines[gateway]))
+        for gateway in world.links
+        if not any(gateway in link for link in laid.crossing)
+    )
+    unit = UNIT / lengths[len(lengths) // 2] if lengths else UNIT
+
     def point(place: Any) -> Point:
-        return round(UNIT * float(place[0])), round(-UNIT * float(place[1]))
+        return round(unit * float(place[0])), round(-unit * float(place[1]))
 
     lines = {gateway: [point(p) for p in line] for gateway, line in laid.lines.items()}
     lines = {g: line if g in world.links else _stub(line) for g, line in lines.items()}
