@@ -26,7 +26,6 @@ from topomap.topology import Gateway
 
 FOLDER = Path(__file__).parent
 PARTLY = ("planar", "perpendicular")  # the parts that can be asked for
-ROUGH = 80  # steps of the descent, for a small picture
 SMALL = 100  # places in a small picture, at most
 ROOM = 2_000_000  # letters that small pictures of one exploration take, about
 
@@ -133,7 +132,7 @@ class Exploration:
             self.watch.title(f"picture of map {scene.number}")
             if len(scene.world.stars) <= MOST_PLACES:
                 ahead = _ahead(scene.world.links, scene.at)
-                self.shapes[tuple(scene.at)] = svg.drawing(scene.world, ahead, faces=True)
+                self.shapes[tuple(scene.at)] = svg.drawing(scene.world, ahead)
                 yield
         later: list[Cube] = []
         for number in range(self.seen.steps, -1, -1):
@@ -146,7 +145,7 @@ class Exploration:
                 parts = (part_of(whole, world) for whole in grown if whole)
                 drawn = next((part for part in parts if part), None)
                 if drawn is None:
-                    drawn = svg.drawing(world, _ahead(world.links, at), ROUGH)
+                    drawn = svg.drawing(world, _ahead(world.links, at), small=True)
                 self.shapes[at] = drawn
                 yield
             later = self.steps[number].shown

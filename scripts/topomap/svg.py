@@ -8,7 +8,7 @@ import math
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from html import escape
-from itertools import pairwise
+from itertools import combinations, pairwise
 from typing import Any
 
 from topomap.scenes import Scene
@@ -16,7 +16,9 @@ from topomap.topology import Gateway, Place, TopologicalMap, label
 
 UNIT = 60  # the middle one of the links
 RADIUS = 11  # of a place
-STUB = 22  # of a pending gateway, at most
+APART = 30  # two places, or else a small picture is made with more steps
+FEW = 80, 400  # steps of the descent, for a small picture
+STUB = 22
 MARGIN = 20
 LONGEST = 16  # letters of a landmark in a picture
 
@@ -38,42 +40,48 @@ class Drawing:
     faces: Sequence[tuple[int, Line, Point]] = ()
 
 
-def drawing(
-    world: TopologicalMap, ahead: Gateway | None, steps: int | None = None, faces: bool = False
-) -> Drawing:
-    """A drawing of a map; see ``layout.layout``."""
+def drawing(world: TopologicalMap, ahead: Gateway | None, small: bool = False) -> Drawing:
+    """A drawing of a map; see ``layout.layout``. A small one has no faces, and is made in as few
+    steps as leave it legible."""
     from topomap import layout  # scipy takes its time
 
-    laid = layout.layout(world, ahead, layout.STEPS if steps is None else steps)
-
-    lengths = sorted(
-        sum(math.dist(p, q) for p, q in pairwise(laid.lines[gateway]))
-        for gateway in world.links
-        if not any(gateway in link for link in laid.crossing)
-    )
-    unit = UNIT / lengths[len(lengths) // 2] if lengths else UNIT
-
-    def point(place: Any) -> Point:
-        return round(unit * float(place[0])), round(-unit * float(place[1]))
-
-    lines = {gateway: [point(p) for p in line] for gateway, line in laid.lines.items()}
-    lines = {g: line if g in world.links else _stub(line) for g, line in lines.items()}
-    places = {place: point(p) for place, p in laid.places.items()}
+    for steps in FEW if small else (layout.STEPS,):
+        laid = layout.layout(world, ahead, steps)
+        crossing = {end for link in laid.crossing for end in link}
+        linked = [end for end in laid.lines if end in world.links and end not in crossing]
+        lengths = sorted(
+            sum(math.dist(p, q) for p, q in pairwise(laid.lines[end])) for end in linked
+        )
+        unit = UNIT / lengths[len(lengths) // 2] if lengths else UNIT
+        places = {place: _point(unit * p) for place, p in laid.places.items()}
+        if all(math.dist(p, q) > APART for p, q in combinations(places.values(), 2)):
+            break
+    lines = {}
+    for gateway, line in laid.lines.items():
+        if gateway not in linked:  # it may be squeezed, but it has a direction
+            way = (line[1] - line[0]) / math.dist(line[0], line[1])
+            lines[gateway] = [_point(unit * line[0] + far * way) for far in (0, STUB)]
+        else:
+            lines[gateway] = [_point(unit * p) for p in line]
     points = [*places.values(), *(p for line in lines.values() for p in line)]
     for out, end in laid.crossing:
         points += _between(lines[out], lines[end])
     xs, ys = zip(*points, strict=True)
     corner = min(xs) - MARGIN, min(ys) - MARGIN
     frame = (*corner, max(xs) + MARGIN - corner[0], max(ys) + MARGIN - corner[1])
-    filled = []
-    if faces:
+    faces = []
+    if not small:
         from topomap.draw import inside  # so does matplotlib
 
         for number, face in enumerate(laid.faces, 1):
             if number - 1 != laid.outer:
-                outline = laid.outline(face)
-                filled.append((number, [point(p) for p in outline], point(inside(outline))))
-    return Drawing(places, lines, laid.crossing, frame, filled)
+                outline = unit * laid.outline(face)
+                faces.append((number, [_point(p) for p in outline], _point(inside(outline))))
+    return Drawing(places, lines, laid.crossing, frame, faces)
+
+
+def _point(point: Any) -> Point:
+    return round(float(point[0])), round(-float(point[1]))
 
 
 def part_of(whole: Drawing, world: TopologicalMap) -> Drawing | None:
