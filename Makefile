@@ -5,6 +5,7 @@
 # make instances  make the batch that instances/batch.txt lists (try make -j2 instances)
 # make bench      time the encodings and the search, write docs/benchmark.md (half an hour;
 #                 BENCH: options, such as BENCH='--only 8x8', BENCH=--quick, BENCH=--help)
+# make figures    draw the pictures of the README again, docs/figures/
 # make beyond     count what is beyond the paper's table, docs/beyond.json (an hour)
 # make clean      remove what make made
 # make committed  make the committed instances again (MAPS: folder of the real maps)
@@ -18,7 +19,7 @@ BATCH   := build/instances
 MAKERS  := $(addprefix scripts/topomap/,environment.py experience.py generate.py network.py \
              route.py topology.py)
 
-.PHONY: all table instances batch test test-long mutate lint bench beyond clean committed
+.PHONY: all table instances batch test test-long mutate lint figures bench beyond clean committed
 .DELETE_ON_ERROR:
 
 all: instances table
@@ -62,6 +63,9 @@ MANHATTAN := network $(MAPS)/manhattan.graphml --slots 4 --north 29 --route tour
 
 bench: $(SETUP)
 	cd tests && ../$(BIN)/python -m bench --networks $(abspath $(MAPS)) $(BENCH)
+
+figures: $(SETUP)
+	$(BIN)/topomap figures --directory docs/figures
 
 beyond: $(SETUP)
 	$(BIN)/topomap table --beyond --resume --output docs/beyond.json

@@ -84,6 +84,7 @@ def _parser() -> Parser:
     _add_family(group)
     _add_draw(group)
     _add_report(group)
+    _add_figures(group)
     return parser
 
 
@@ -500,3 +501,25 @@ def _add_report(group: Any) -> None:
         "(default: %(default)g)",
     )
     add("-o", "--output", metavar="FILE", help="file to write (default: stdout)")
+
+
+def _add_figures(group: Any) -> None:
+    command = _command(
+        group,
+        "figures",
+        pictures.figures,
+        "draw the paper's figures and some more, from computed answers",
+        "  topomap figures -d docs/figures\n  topomap figures figure1 figure5 -d .",
+    )
+    command.add_argument(
+        "figure", nargs="*", default=(), metavar="FIGURE", help="these only, as figure1"
+    )
+    command.add_argument(
+        "-d", "--directory", required=True, metavar="DIR", help="folder for FIGURE.svg"
+    )
+    command.add_argument(
+        "--instances",
+        default="instances",
+        metavar="DIR",
+        help="where they are (default: instances)",
+    )

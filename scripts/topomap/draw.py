@@ -16,18 +16,12 @@ from topomap.layout import Layout, Points, layout
 from topomap.scenes import Scene
 from topomap.topology import Gateway, Place, TopologicalMap, label
 
-INK, LINK, CROSSING, PENDING, AGENT, SIGN = (
-    "#1b1b1b",
-    "#3d4a57",
-    "#c2332d",
-    "#2f7fc1",
-    "#e07b00",
-    "#2e7d4f",
-)
+INK, LINK, CROSSING, PENDING = "#1b1b1b", "#3d4a57", "#c2332d", "#2f7fc1"
+AGENT, SIGN, SIGNED, STEP = "#e07b00", "#2e7d4f", "#e7f5ea", "#5c6670"
 FACES = ("#dfeaf3", "#f6ead9", "#e3f0e0", "#efe3ef", "#f3f0d8", "#dff0ee")
 RADIUS = 0.15  # of a place's circle, where a link is of length 1
+DASHES: Any = (0, (4, 2))
 UNIT = 0.8  # inches that a link of length 1 takes
-FORMATS = ("svg", "png", "pdf")
 STYLE: Any = {
     "svg.hashsalt": "topomap",
     "svg.fonttype": "none",
@@ -46,8 +40,7 @@ def draw(axes: Axes, scene: Scene, faces: bool = True, route: bool = True) -> La
         _draw_faces(axes, laid)
     for gateway, line in laid.lines.items():
         _draw_line(axes, world, laid, gateway, line)
-    for out, end in laid.crossing:
-        _draw_crossing(axes, laid, out, end)
+    curves = [_draw_crossing(axes, laid, out, end) for out, end in laid.crossing]
     for place, point in laid.places.items():
         _draw_place(axes, world, place, point)
     if route:
@@ -58,7 +51,7 @@ def draw(axes: Axes, scene: Scene, faces: bool = True, route: bool = True) -> La
     axes.set_title(scene.title, fontsize=9, color=INK, pad=8)
     axes.set_aspect("equal")
     axes.set_axis_off()
-    points = np.concatenate([*laid.lines.values(), *([p] for p in laid.places.values())])
+    points = np.concatenate([*laid.lines.values(), *curves, *([p] for p in laid.places.values())])
     low, high = points.min(0) - 0.45, points.max(0) + 0.45
     axes.set_xlim(low[0], high[0])
     axes.set_ylim(low[1], high[1])
@@ -113,22 +106,24 @@ def gid(gateway: Gateway) -> str:
     return f"{label(gateway[0])}.{gateway[1]}"
 
 
-def _draw_crossing(axes: Axes, laid: Layout, out: Gateway, end: Gateway) -> None:
-    """The middle of a link that crosses others: from stub to stub, as it leaves them."""
+def _draw_crossing(axes: Axes, laid: Layout, out: Gateway, end: Gateway) -> Points:
+    """The middle of a link that crosses others, from stub to stub, as it leaves them; returns
+    its points."""
     (a, b), (d, c) = (laid.lines[gateway][-2:] for gateway in (out, end))
-    far = np.linalg.norm(c - b) / 2.5
+    far = min(0.7, np.linalg.norm(c - b) / 2)
     first, last = ((q - p) / np.linalg.norm(q - p) for p, q in ((a, b), (d, c)))
     t = np.linspace(0, 1, 40)[:, None]
     points = [b, b + far * first, c + far * last, c]
     weights = [(1 - t) ** 3, 3 * t * (1 - t) ** 2, 3 * t**2 * (1 - t), t**3]
-    curve = sum(w * p for w, p in zip(weights, points, strict=True))
+    curve = np.asarray(sum(w * p for w, p in zip(weights, points, strict=True)))
     name = f"crossing-{gid(out)}-to-{gid(end)}"
-    axes.plot(*np.asarray(curve).T, color=CROSSING, lw=1.6, ls=(0, (4, 2)), gid=name)
+    axes.plot(*curve.T, color=CROSSING, lw=1.6, ls=DASHES, gid=name)
+    return curve
 
 
 def _draw_place(axes: Axes, world: TopologicalMap, place: Place, point: Points) -> None:
-    signs = ", ".join(sorted(world.landmarks.get(place, ())))
-    face = "#e7f5ea" if signs else "white"
+    signs = ", ".join(sign.strip('"') for sign in sorted(world.landmarks.get(place, ())))
+    face = SIGNED if signs else "white"
     axes.add_patch(
         Circle(tuple(point), RADIUS, fc=face, ec=INK, lw=1.2, zorder=4, gid=f"place-{label(place)}")
     )
@@ -157,7 +152,7 @@ def _draw_steps(axes: Axes, laid: Layout, gateway: Gateway, steps: list[int]) ->
         y,
         text,
         fontsize=5.5,
-        color="#5c6670",
+        color=STEP,
         ha="center",
         va="center",
         rotation=_upright(ahead),
@@ -194,33 +189,29 @@ def _draw_agent(axes: Axes, laid: Layout, dstate: Gateway) -> None:
 
 
 def legend(figure: Figure, scenes: Sequence[Scene]) -> None:
-    """What the signs mean, of those that occur."""
+    """What the signs mean, of those that occur, in a line or more at the foot of a figure."""
     worlds = [scene.world for scene in scenes]
-    entries: list[tuple[Any, str]] = [
-        (Line2D([], [], marker="o", ls="", mfc="white", mec=INK, ms=8), "place, by its first step"),
-        (Line2D([], [], color=LINK, lw=2), "link, and the steps along it"),
-    ]
+    place: Any = {"marker": "o", "ls": "", "mec": INK, "ms": 8}
+    entries: list[tuple[Any, str]] = [(Line2D([], [], mfc="white", **place), "place")]
+    if any(world.links for world in worlds):
+        entries.append((Line2D([], [], color=LINK, lw=2), "link"))
     if any(world.pending() for world in worlds):
-        pending = Line2D([], [], color=PENDING, lw=1.8, marker="o", mfc="white", markevery=[1])
-        entries.append((pending, "pending gateway"))
+        pending: Any = {"marker": "o", "mfc": "white", "mec": PENDING, "markevery": [1]}
+        line = Line2D([0, 1], [0, 0], color=PENDING, lw=1.8, **pending)
+        entries.append((line, "pending gateway"))
     if any(world.genus() for world in worlds):
-        entries.append(
-            (Line2D([], [], color=CROSSING, lw=1.6, ls=(0, (4, 2))), "link that crosses")
-        )
+        entries.append((Line2D([], [], color=CROSSING, lw=1.6, ls=DASHES), "link that crosses"))
     if any(len(world.faces()) > 1 for world in worlds):
-        entries.append((Patch(fc=FACES[0]), "face, numbered"))
+        entries.append((Patch(fc=FACES[0]), "face"))
     if any(any(world.landmarks.values()) for world in worlds):
-        sign = Line2D([], [], marker="o", ls="", mfc="#e7f5ea", mec=INK, ms=8)
-        entries.append((sign, "place with landmarks"))
+        entries.append((Line2D([], [], mfc=SIGNED, **place), "place with landmarks"))
+    if any(len(scene.at) > 1 for scene in scenes):
+        entries.append((Line2D([], [], marker="$3$", ls="", color=STEP, ms=6), "step"))
     if any(scene.at for scene in scenes):
         entries.append((Line2D([], [], marker="^", ls="", color=AGENT, ms=7), "agent"))
-    figure.legend(
-        *zip(*entries, strict=True),
-        loc="lower center",
-        ncols=min(4, len(entries)),
-        fontsize=7,
-        frameon=False,
-    )
+    columns = max(1, int(figure.get_size_inches()[0] / 1.3))
+    handles, labels = zip(*entries, strict=True)
+    figure.legend(handles, labels, loc="lower center", ncols=columns, fontsize=7, frameon=False)
 
 
 def picture(scenes: Sequence[Scene], columns: int = 3) -> Figure:
@@ -231,18 +222,29 @@ def picture(scenes: Sequence[Scene], columns: int = 3) -> Figure:
         columns = min(columns, len(scenes))
         rows = -(-len(scenes) // columns)
         grid = figure.subplots(rows, columns, squeeze=False)
-        spans = []
-        for scene, axes in zip(scenes, grid.ravel(), strict=False):
+        used = grid.ravel()[: len(scenes)]
+        for scene, axes in zip(scenes, used, strict=True):
             draw(axes, scene)
-            spans.append((np.ptp(axes.get_xlim()), np.ptp(axes.get_ylim())))
+        # One scale for all: each map in the middle of as much room as the largest needs.
+        width, height = np.max([_spans(axes) for axes in used], axis=0)
+        for axes in used:
+            (x0, x1), (y0, y1) = axes.get_xlim(), axes.get_ylim()
+            axes.set_xlim((x0 + x1 - width) / 2, (x0 + x1 + width) / 2)
+            axes.set_ylim((y0 + y1 - height) / 2, (y0 + y1 + height) / 2)
         for axes in grid.ravel()[len(scenes) :]:
             axes.set_axis_off()
-        width, height = (max(span) * UNIT for span in zip(*spans, strict=True))
-        figure.set_size_inches(max(4.5, columns * width), rows * (height + 0.6) + 0.6)
+        size = max(4.5, columns * width * UNIT), rows * (height * UNIT + 0.6) + 0.6
+        figure.set_size_inches(size)
         legend(figure, scenes)
         bottom = 0.6 / figure.get_size_inches()[1]
         figure.subplots_adjust(0.01, bottom, 0.99, 1 - bottom * 0.9, 0.02, 0.15)
     return figure
+
+
+def _spans(axes: Axes) -> tuple[float, float]:
+    """Width and height of what axes show."""
+    (x0, x1), (y0, y1) = axes.get_xlim(), axes.get_ylim()
+    return x1 - x0, y1 - y0
 
 
 def save(figure: Figure, file: IO[bytes], format: str) -> None:

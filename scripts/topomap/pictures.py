@@ -9,6 +9,8 @@ from topomap.files import output
 from topomap.scenes import Scene
 from topomap.solver import INTERRUPT, PARTS, Query, Watch
 
+FORMATS = ("svg", "png", "pdf")
+
 
 def draw(args: argparse.Namespace) -> int:
     """Draw a map into a file."""
@@ -25,9 +27,6 @@ def draw(args: argparse.Namespace) -> int:
     return status
 
 
-FORMATS = ("svg", "png", "pdf")
-
-
 def _scene(args: argparse.Namespace) -> tuple[Scene | None, int]:
     """The map that is asked for, and the exit status: partial, if it may not be the best."""
     parts = frozenset(part for part in PARTS if getattr(args, part, False))
@@ -40,3 +39,24 @@ def _scene(args: argparse.Namespace) -> tuple[Scene | None, int]:
         raise InputError(f"{args.file}: it has {len(found)} maps, there is no map {number}")
     status = (INTERRUPTED if fault == INTERRUPT else PARTIAL) if fault else DONE
     return (found[number - 1] if found else None), status
+
+
+def figures(args: argparse.Namespace) -> int:
+    """Draw the paper's figures, and some more, into a folder."""
+    from topomap import draw
+    from topomap.figures import figures
+
+    folder = Path(args.directory)
+    with Watch() as watch:
+        made = figures(Path(args.instances), watch)
+        chosen = args.figure or list(made)
+        for name in chosen:
+            if name not in made:
+                raise InputError(f"{name}: the figures are {', '.join(made)}")
+        for name in chosen:
+            watch.title(name)
+            file = folder / f"{name}.svg"
+            with output(str(file), parents=True, binary=True) as out:
+                draw.save(made[name](), out, "svg")
+            print(file)
+    return DONE

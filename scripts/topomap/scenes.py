@@ -22,7 +22,8 @@ MOST_PLACES = 1000  # in a picture
 class Scene:
     """A map, and the dstate after each step of the route in it, from step 0 (or none).
 
-    ``name`` says where it is from; ``number`` of ``many`` such maps; ``kind`` what they are.
+    ``name`` says where it is from; ``number`` of ``many`` such maps; ``kind`` what they are;
+    ``caption`` is a title instead of these.
     """
 
     world: TopologicalMap
@@ -31,6 +32,7 @@ class Scene:
     number: int = 1
     many: int = 1
     kind: str = ""
+    caption: str = ""
 
     @property
     def title(self) -> str:
@@ -44,7 +46,8 @@ class Scene:
             _number(len(world.paths()), "path"),
             "planar" if genus == 0 else f"genus {genus}",
         ]
-        return f"{self.name}: {which}{f', {self.kind}' * bool(self.kind)}\n{', '.join(sizes)}"
+        title = self.caption or f"{self.name}: {which}{f', {self.kind}' * bool(self.kind)}"
+        return f"{title}\n{', '.join(sizes)}"
 
     def steps(self) -> dict[Gateway, list[int]]:
         """The steps that leave by each gateway."""

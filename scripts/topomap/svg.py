@@ -16,8 +16,8 @@ from topomap.topology import Gateway, Place, TopologicalMap, label
 
 UNIT = 60  # the middle one of the links
 RADIUS = 11  # of a place
-APART = 30  # two places, or else a small picture is made with more steps
-FEW = 80, 400  # steps of the descent, for a small picture
+APART, NARROW = 30, 15  # places, and in degrees gateways, if they are to be told
+FEW = 80, 400, 1500  # steps of the descent, for a small picture, until they are
 STUB = 22
 MARGIN = 20
 LONGEST = 16  # letters of a landmark in a picture
@@ -54,7 +54,9 @@ def drawing(world: TopologicalMap, ahead: Gateway | None, small: bool = False) -
         )
         unit = UNIT / lengths[len(lengths) // 2] if lengths else UNIT
         places = {place: _point(unit * p) for place, p in laid.places.items()}
-        if all(math.dist(p, q) > APART for p, q in combinations(places.values(), 2)):
+        if all(math.dist(p, q) > APART for p, q in combinations(places.values(), 2)) and all(
+            _narrowest(laid.lines, place, star) > NARROW for place, star in world.stars.items()
+        ):
             break
     lines = {}
     for gateway, line in laid.lines.items():
@@ -82,6 +84,14 @@ def drawing(world: TopologicalMap, ahead: Gateway | None, small: bool = False) -
 
 def _point(point: Any) -> Point:
     return round(float(point[0])), round(-float(point[1]))
+
+
+def _narrowest(lines: Mapping[Gateway, Any], place: Place, star: Collection[int]) -> float:
+    """The least angle between gateways of a place, in degrees."""
+    ways = [lines[place, slot][1] - lines[place, slot][0] for slot in star]
+    angles = sorted(math.degrees(math.atan2(y, x)) for x, y in ways)
+    gaps = (b - a for a, b in pairwise([*angles, angles[0] + 360]))
+    return min(gaps)
 
 
 def part_of(whole: Drawing, world: TopologicalMap) -> Drawing | None:

@@ -159,6 +159,24 @@ class TopologicalMap:
         start = next(self.gateways(), None)
         return start is None or any(self._match(start, other, g) for g in other.gateways())
 
+    def indistinguishable(self, mine: Gateway, other: "TopologicalMap", theirs: Gateway) -> bool:
+        """Whether no further walk from these dstates, in closed maps, can tell the maps apart:
+        whatever ways are taken, the same is seen in both (the paper, Figure 1)."""
+        seen = {(mine, theirs)}
+        for here, there in (waiting := list(seen)):
+            (place, slot), (image, at) = here, there
+            if self.view(here) != other.view(there):
+                return False
+            if self.landmarks.get(place, frozenset()) != other.landmarks.get(image, frozenset()):
+                return False
+            for turn in self.view(here):
+                out, way = (slot + turn) % self.slots, (at + turn) % self.slots
+                pair = self.links[place, out], other.links[image, way]
+                if pair not in seen:
+                    seen.add(pair)
+                    waiting.append(pair)
+        return True
+
     def _match(self, mine: Gateway, other: "TopologicalMap", theirs: Gateway) -> bool:
         """Whether laying ``mine`` on ``theirs`` makes the maps coincide."""
         image: dict[Place, Gateway] = {}

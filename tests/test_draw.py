@@ -1,0 +1,264 @@
+"""Pictures: rotations, links and faces are read back from the coordinates that are drawn."""
+
+import json
+import os
+import random
+import re
+import subprocess
+import sys
+from io import BytesIO
+from itertools import combinations, pairwise
+
+import numpy as np
+import pytest
+from conftest import ROOT, run
+from defusedxml import ElementTree
+from topomap import draw, search
+from topomap.environment import grid, lattice
+from topomap.generate import instance
+from topomap.layout import layout, planar_part
+from topomap.pictures import FORMATS
+from topomap.scenes import Scene
+from topomap.solver import Query, Watch
+from topomap.topology import TopologicalMap
+from worlds import WORLDS, random_experience
+
+QUIET = Watch(quiet=True)
+GRID = "instances/grid-3x3-snake.lp"
+NUMBER = r"-?\d+(?:\.\d+)?"
+
+
+def some_map(number, *parts, steps=14):
+    """A hypothesis of a random experience, among the first ones; without planarity one of them
+    that has the highest genus."""
+    draws = random.Random(f"picture {number}")
+    experience = random_experience(draws, steps)
+    found = [
+        one.at
+        for one, _ in zip(
+            search.hypotheses(experience, Query(frozenset(parts)), QUIET), range(50), strict=False
+        )
+    ]
+    draws.shuffle(found)
+    at = max(found, key=lambda at: experience.map_of(at).genus())
+    return Scene(experience.map_of(at), at, f"random {number}")
+
+
+def lines_of(scene):
+    """The lines in the picture of a map: of each gateway the one that leaves by it, y upwards;
+    and the identifiers of all that is drawn."""
+    file = BytesIO()
+    draw.save(draw.picture([scene]), file, "svg")
+    groups = ElementTree.fromstring(file.getvalue()).iter("{http://www.w3.org/2000/svg}g")
+    drawn = {group.get("id"): group for group in groups if group.get("id")}
+    lines = {}
+    for name, group in drawn.items():
+        kind, _, rest = name.partition("-")
+        if kind in ("link", "pending"):
+            path = next(iter(group)).get("d")
+            points = np.array(re.findall(f"({NUMBER}) ({NUMBER})", path), float) * [1, -1]
+            ends = [tuple(map(int, gateway.split("."))) for gateway in rest.split("-to-")]
+            lines[ends[0]] = points
+            if len(ends) == 2:
+                lines[ends[1]] = points[::-1]
+    return lines, drawn
+
+
+def clockwise(lines, place):
+    """The slots of a place, in the clockwise order of the lines that leave it."""
+    outs = {slot: line[1] - line[0] for (p, slot), line in lines.items() if p == place}
+    order = sorted(outs, key=lambda slot: -np.arctan2(*outs[slot][::-1]))
+    least = order.index(min(order))
+    return order[least:] + order[:least]
+
+
+def cross(a, b, c, d):
+    """Whether two line segments meet."""
+
+    def side(p, q, r):
+        return np.sign(round((q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]), 6))
+
+    return side(a, b, c) != side(a, b, d) and side(c, d, a) != side(c, d, b)
+
+
+def no_two_cross(world, lines):
+    """Lines meet at most in places that they share."""
+    once = [
+        g
+        for g in lines
+        if g not in world.links or g < world.links[g] or world.links[g] not in lines
+    ]
+    segments = [(g, n, pair) for g in once for n, pair in enumerate(pairwise(lines[g]))]
+    for (g, n, (a, b)), (h, m, (c, d)) in combinations(segments, 2):
+        near = (g == h and abs(n - m) < 2) or {tuple(a), tuple(b)} & {tuple(c), tuple(d)}
+        assert near or not cross(a, b, c, d), (g, h)
+    return True
+
+
+def check(scene):
+    """What holds of every picture."""
+    world = scene.world
+    lines, drawn = lines_of(scene)
+    crossing = [name for name in drawn if name.startswith("crossing-")]
+    part = planar_part(world)
+    assert set(lines) == set(world.gateways())
+    assert len(crossing) == (len(world.links) - len(part.links)) // 2
+    assert bool(crossing) == (world.genus() > 0)
+    assert f"genus {world.genus()}" in scene.title or world.genus() == 0
+    for place, star in world.stars.items():
+        assert f"place-{place}" in drawn
+        assert clockwise(lines, place) == sorted(star)
+    for gateway, end in part.links.items():
+        assert np.allclose(lines[gateway], lines[end][::-1])
+        assert np.allclose(lines[gateway][-1], lines[end][0])
+    no_two_cross(part, lines)
+    faces = {name for name in drawn if name.startswith("face-")}
+    assert len(faces) == len(part.faces()) - 1
+    if scene.at:
+        assert f"agent-{draw.gid(scene.at[-1])}" in drawn
+    return lines
+
+
+@pytest.mark.parametrize("number", range(12))
+def test_planar_maps_are_drawn_without_crossings(number):
+    check(some_map(number, "planar"))
+
+
+@pytest.mark.parametrize("number", range(10))
+def test_of_other_maps_the_links_that_cross_are_drawn_so(number):
+    check(some_map(number))
+
+
+def test_some_of_these_maps_are_of_higher_genus():
+    assert {some_map(number).world.genus() for number in range(10)} >= {0, 1}
+
+
+@pytest.mark.parametrize("name", WORLDS)
+def test_named_worlds(name):
+    found = list(search.hypotheses(WORLDS[name], Query(), QUIET))
+    at = max(one.at for one in found)
+    check(Scene(WORLDS[name].map_of(at), at, name))
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("block", range(4))
+def test_many_maps(block):
+    for number in range(block * 50, block * 50 + 50):
+        check(some_map(f"many {number}", *["planar"] * (number % 3 > 0), steps=25))
+
+
+@pytest.mark.parametrize(("rows", "columns"), [(2, 2), (3, 4), (5, 5)])
+def test_a_grid_looks_like_a_grid(rows, columns):
+    """Its first row from left to right, its links of one length, its corners the square ones."""
+    made = instance(grid(rows, columns), "snake")
+    lines = check(Scene(made.experience.map_of(made.truth), made.truth, "grid"))
+    steps = np.array([line[-1] - line[0] for line in lines.values()])
+    length = abs(steps).max()
+    assert np.allclose(np.sort(abs(steps)), [0, length], atol=1e-3)
+    assert np.allclose(lines[0, 0][-1] - lines[0, 0][0], [length, 0], atol=1e-3)
+    ends = np.concatenate([line[[0, -1]] for line in lines.values()])
+    assert np.allclose(np.ptp(ends, axis=0), length * np.array([columns - 1, rows - 1]), atol=1e-2)
+
+
+@pytest.mark.parametrize("kind", ["hexagons", "triangles"])
+def test_lattices_are_even(kind):
+    made = instance(lattice(kind, 2, 2), "tour")
+    lines = check(Scene(made.experience.map_of(made.truth), made.truth, kind))
+    lengths = [np.linalg.norm(line[-1] - line[0]) for line in lines.values()]
+    assert np.allclose(lengths, lengths[0], atol=1e-2)
+    assert {len(line) for line in lines.values()} == {2}
+
+
+def test_the_agents_right_is_the_pictures_right():
+    """In a corner seen from the west, slot 3 of 4 slots is on the left, slot 1 on the right."""
+    world = TopologicalMap(
+        4, {0: frozenset({0, 1}), 1: frozenset({0, 3})}, {(0, 0): (1, 0), (1, 0): (0, 0)}
+    )
+    laid = layout(world)
+    assert np.allclose(laid.places[1] - laid.places[0], [1, 0])
+    (_, _), (x, y) = laid.lines[0, 1]
+    assert abs(x) < 1e-9
+    assert y < 0  # slot 1 is clockwise of slot 0, which leaves to the right
+    (_, _), (x, y) = laid.lines[1, 3]
+    assert abs(x - 1) < 1e-9
+    assert y < 0
+
+
+def test_faces_are_round_their_numbers():
+    for number in range(6):
+        scene = some_map(number, "planar")
+        laid = layout(scene.world)
+        for index, face in enumerate(laid.faces):
+            if not face:
+                continue
+            outline = laid.outline(face)
+            x, y = outline.T
+            area = (x * np.roll(y, -1) - np.roll(x, -1) * y).sum() / 2
+            assert (area >= -1e-9) if index == laid.outer else (area < 0)
+
+
+def test_the_same_bytes_for_the_same_map(tmp_path):
+    """In processes that order sets in other ways."""
+    program = "from topomap.cli import main; assert not any(main(call) for call in {})"
+    for seed in "12":
+        names = [f"{tmp_path}/{seed}.{form}" for form in FORMATS]
+        calls = [["draw", GRID, "-o", name] for name in names]
+        environment = {**os.environ, "PYTHONHASHSEED": seed}
+        call = [sys.executable, "-c", program.format(calls)]
+        subprocess.run(call, cwd=ROOT, check=True, env=environment)
+    for form in FORMATS:
+        one, other = (tmp_path / f"{seed}.{form}" for seed in "12")
+        assert one.read_bytes() == other.read_bytes()
+
+
+def test_maps_from_a_file(tmp_path, topomap):
+    maps = tmp_path / "maps.json"
+    assert not topomap("solve", GRID, "--optimal", "--json", "-o", maps).returncode
+    pictures = [tmp_path / name for name in ("a.svg", "b.svg")]
+    for source, picture in zip((maps, GRID), pictures, strict=True):
+        assert not topomap("draw", source, "--map", "1", "-o", picture).returncode
+    at = [json.loads(maps.read_text())["maps"][n]["at"] for n in (0, 1)]
+    same = pictures[0].read_bytes() == pictures[1].read_bytes()
+    assert same == (at[0] < at[1])
+
+
+@pytest.mark.parametrize(
+    ("change", "fault"),
+    [
+        (lambda d: d.pop("slots"), "slots, places and links are wanted"),
+        (lambda d: d.update(slots=3), "slots is not an even number"),
+        (lambda d: d["maps"][0].pop("links"), "slots, places and links are wanted"),
+        (lambda d: d["maps"][0]["links"].append([[0, 0], [1, 0]]), "not there, or two"),
+        (lambda d: d["maps"][0]["links"].pop(), "at goes by links that are not there"),
+        (lambda d: d["maps"][0].update(links=[]), "the map is in parts"),
+        (lambda d: d["maps"][0].update(places=[]), "0 places"),
+        (lambda d: d["maps"][0].update(places=[{"place": "a"}]), "not as solve --json writes"),
+        (lambda d: d["maps"].clear(), "count is"),
+    ],
+)
+def test_maps_that_are_none_are_refused(tmp_path, topomap, change, fault):
+    maps, picture = tmp_path / "maps.json", tmp_path / "map.svg"
+    assert not topomap("solve", GRID, "--closed", "--json", "-o", maps).returncode
+    document = json.loads(maps.read_text())
+    change(document)
+    maps.write_text(json.dumps(document))
+    done = topomap("draw", maps, "-o", picture)
+    assert (done.returncode, done.stdout, len(done.stderr.splitlines())) == (2, "", 1)
+    assert done.stderr.startswith(str(maps))
+    assert fault in done.stderr
+    assert not picture.exists()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "fault"),
+    [
+        ([GRID, "-o", "map.txt"], "map.txt: a picture is svg, png, pdf"),
+        ([GRID, "-o", "/none/map.svg"], "/none/map.svg: no such file"),
+        ([GRID, "--map", "3", "-o", "/none.svg"], "it has 2 maps, there is no map 3"),
+        (["none.lp", "-o", "/none.svg"], "none.lp: no such file"),
+    ],
+)
+def test_bad_calls_are_refused(arguments, fault):
+    done = run("topomap", "draw", *arguments)
+    assert (done.returncode, done.stdout, len(done.stderr.splitlines())) == (2, "", 1)
+    assert fault in done.stderr

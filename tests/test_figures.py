@@ -1,0 +1,69 @@
+"""The figures: what they show is computed, and the committed ones are what is drawn."""
+
+import re
+
+import pytest
+from conftest import ROOT
+from topomap import figures
+from topomap.cli import main
+from topomap.environment import grid
+from topomap.experience import read
+from topomap.generate import instance
+from topomap.solver import Watch
+
+QUIET = Watch(quiet=True)
+DOCS = ROOT / "docs/figures"
+NAMES = list(figures.figures(ROOT / "instances", QUIET))
+
+
+@pytest.mark.parametrize(
+    "name", [n if n != "manhattan" else pytest.param(n, marks=pytest.mark.long) for n in NAMES]
+)
+def test_the_committed_figures_are_what_is_drawn(tmp_path, monkeypatch, name):
+    """All but the last digits of coordinates, which may differ from machine to machine."""
+    monkeypatch.chdir(ROOT)
+    assert main(["figures", name, "-d", str(tmp_path)]) == 0
+    drawn, committed = ((folder / f"{name}.svg").read_text() for folder in (tmp_path, DOCS))
+    assert words(drawn) == words(committed)
+
+
+def words(svg):
+    """The texts and the named parts of a picture."""
+    return re.findall(r"<text [^>]*>([^<]*)</text>", svg), re.findall(r'<g id="([\w.-]+)"', svg)
+
+
+def test_a_figure_that_is_not_there(capsys, tmp_path):
+    assert main(["figures", "figure9", "-d", str(tmp_path)]) == 2
+    assert "figure9: the figures are figure1, " in capsys.readouterr().err
+    assert not any(tmp_path.iterdir())
+
+
+def test_maps_that_can_be_told_apart():
+    """Of the two optimal 3x3 maps none can be told from the grid; of the two of 4x4 one."""
+    for size, told in ((3, [False, False]), (4, [False, True])):
+        experience = read(ROOT / f"instances/grid-{size}x{size}-snake.lp")
+        made = instance(grid(size, size), "snake")
+        real = experience.map_of(made.truth)
+        optimal = figures.best(experience, QUIET)
+        pairs = [(scene.world, scene.at[-1]) for scene in optimal]
+        same = [world.indistinguishable(at, real, made.truth[-1]) for world, at in pairs]
+        assert sorted(not one for one in same) == told
+        assert all(
+            walk_differs(world, at, real, made.truth[-1]) != one
+            for (world, at), one in zip(pairs, same, strict=True)
+        )
+
+
+def walk_differs(world, here, other, there):
+    """Whether some walk sees a difference, by trying all of them, breadth first, up to a length
+    that is enough for as many pairs of dstates as there are."""
+    level = {(here, there)}
+    for _ in range(60):
+        if any(world.view(a) != other.view(b) for a, b in level):
+            return True
+        level = {
+            (world.links[a[0], (a[1] + turn) % 4], other.links[b[0], (b[1] + turn) % 4])
+            for a, b in level
+            for turn in world.view(a)
+        }
+    return False
