@@ -125,6 +125,10 @@ class Exploration:
         by_clingo = self.counted[step]
         return self.steps[step].alive if by_clingo is None else by_clingo
 
+    def _keep(self, at: Cube, drawn: Drawing | None) -> None:
+        if drawn:
+            self.shapes[at] = drawn
+
     def _draw(self) -> Iterator[None]:
         """Drawings of the best maps, and small ones, from the last step back: that of a map
         which grows to another one that is shown is a part of the other's."""
@@ -132,7 +136,7 @@ class Exploration:
             self.watch.title(f"picture of map {scene.number}")
             if len(scene.world.stars) <= MOST_PLACES:
                 ahead = _ahead(scene.world.links, scene.at)
-                self.shapes[tuple(scene.at)] = svg.drawing(scene.world, ahead)
+                self._keep(tuple(scene.at), svg.drawing(scene.world, ahead))
                 yield
         later: list[Cube] = []
         for number in range(self.seen.steps, -1, -1):
@@ -146,7 +150,7 @@ class Exploration:
                 drawn = next((part for part in parts if part), None)
                 if drawn is None:
                     drawn = svg.drawing(world, _ahead(world.links, at), small=True)
-                self.shapes[at] = drawn
+                self._keep(at, drawn)
                 yield
             later = self.steps[number].shown
 

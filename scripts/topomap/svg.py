@@ -9,15 +9,18 @@ from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from html import escape
 from itertools import combinations, pairwise
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from topomap.scenes import Scene
 from topomap.topology import Gateway, Place, TopologicalMap, label
 
+if TYPE_CHECKING:
+    from topomap.layout import Layout
+
 UNIT = 60  # the middle one of the links
 RADIUS = 11  # of a place
 APART, NARROW = 30, 15  # places, and in degrees gateways, if they are to be told
-FEW = 80, 400, 1500  # steps of the descent, for a small picture, until they are
+FEW = 80, 400  # steps of the descent, for a small picture, until they are
 STUB = 22
 MARGIN = 20
 LONGEST = 16  # letters of a landmark in a picture
@@ -40,31 +43,20 @@ class Drawing:
     faces: Sequence[tuple[int, Line, Point]] = ()
 
 
-def drawing(world: TopologicalMap, ahead: Gateway | None, small: bool = False) -> Drawing:
+def drawing(world: TopologicalMap, ahead: Gateway | None, small: bool = False) -> Drawing | None:
     """A drawing of a map; see ``layout.layout``. A small one has no faces, and is made in as few
-    steps as leave it legible."""
+    steps as leave it legible; there is none if the gateways of a place cannot be told apart."""
     from topomap import layout  # scipy takes its time
 
     for steps in FEW if small else (layout.STEPS,):
         laid = layout.layout(world, ahead, steps)
-        crossing = {end for link in laid.crossing for end in link}
-        linked = [end for end in laid.lines if end in world.links and end not in crossing]
-        lengths = sorted(
-            sum(math.dist(p, q) for p, q in pairwise(laid.lines[end])) for end in linked
-        )
-        unit = UNIT / lengths[len(lengths) // 2] if lengths else UNIT
-        places = {place: _point(unit * p) for place, p in laid.places.items()}
-        if all(math.dist(p, q) > APART for p, q in combinations(places.values(), 2)) and all(
-            _narrowest(laid.lines, place, star) > NARROW for place, star in world.stars.items()
-        ):
+        unit, places, lines = _scaled(laid, world)
+        narrowest = min((_narrowest(lines, *star) for star in world.stars.items()), default=360)
+        apart = all(math.dist(p, q) > APART for p, q in combinations(places.values(), 2))
+        if apart and narrowest > NARROW:
             break
-    lines = {}
-    for gateway, line in laid.lines.items():
-        if gateway not in linked:  # it may be squeezed, but it has a direction
-            way = (line[1] - line[0]) / math.dist(line[0], line[1])
-            lines[gateway] = [_point(unit * line[0] + far * way) for far in (0, STUB)]
-        else:
-            lines[gateway] = [_point(unit * p) for p in line]
+    if small and not narrowest:
+        return None
     points = [*places.values(), *(p for line in lines.values() for p in line)]
     for out, end in laid.crossing:
         points += _between(lines[out], lines[end])
@@ -82,21 +74,43 @@ def drawing(world: TopologicalMap, ahead: Gateway | None, small: bool = False) -
     return Drawing(places, lines, laid.crossing, frame, faces)
 
 
+def _scaled(
+    laid: "Layout", world: TopologicalMap
+) -> tuple[float, dict[Place, Point], dict[Gateway, Line]]:
+    """The unit, and places and lines in it. A stub may be squeezed, but it has a direction."""
+    crossing = {end for link in laid.crossing for end in link}
+    linked = [end for end in laid.lines if end in world.links and end not in crossing]
+    lengths = sorted(sum(math.dist(p, q) for p, q in pairwise(laid.lines[end])) for end in linked)
+    unit = UNIT / lengths[len(lengths) // 2] if lengths else UNIT
+    lines = {}
+    for gateway, line in laid.lines.items():
+        points = [unit * p for p in line]
+        if gateway not in linked:
+            way = (line[1] - line[0]) / math.dist(line[0], line[1])
+            points = [unit * line[0] + far * way for far in (0, STUB)]
+        lines[gateway] = [_point(p) for p in points]
+    return unit, {place: _point(unit * p) for place, p in laid.places.items()}, lines
+
+
+def _narrowest(lines: Mapping[Gateway, Line], place: Place, star: Collection[int]) -> float:
+    """The least angle in degrees between neighbouring gateways of a place; 0 if they are not
+    seen to be in their order."""
+    angles = []
+    for slot in sorted(star):
+        x, y = lines[place, slot][0]
+        u, v = next((p for p in lines[place, slot] if p != (x, y)), (x, y))
+        angles.append(math.degrees(math.atan2(v - y, u - x)))
+    gaps = [(b - a) % 360 for a, b in pairwise([*angles, angles[0]])] if len(star) > 1 else [360.0]
+    return min(gaps) if sum(gaps) < 361 else 0.0
+
+
 def _point(point: Any) -> Point:
     return round(float(point[0])), round(-float(point[1]))
 
 
-def _narrowest(lines: Mapping[Gateway, Any], place: Place, star: Collection[int]) -> float:
-    """The least angle between gateways of a place, in degrees."""
-    ways = [lines[place, slot][1] - lines[place, slot][0] for slot in star]
-    angles = sorted(math.degrees(math.atan2(y, x)) for x, y in ways)
-    gaps = (b - a for a, b in pairwise([*angles, angles[0] + 360]))
-    return min(gaps)
-
-
 def part_of(whole: Drawing, world: TopologicalMap) -> Drawing | None:
     """The drawing of a map that has grown to the whole one; None if it would show a crossing
-    that it need not have."""
+    that it need not have, or gateways cannot be told apart."""
     crossing = [link for link in whole.crossing if link[0] in world.links]
     if crossing and world.genus() == 0:
         return None
@@ -105,6 +119,8 @@ def part_of(whole: Drawing, world: TopologicalMap) -> Drawing | None:
         for gateway, line in whole.lines.items()
         if gateway[0] in world.stars
     }
+    if not all(_narrowest(lines, *star) for star in world.stars.items()):
+        return None
     places = {place: point for place, point in whole.places.items() if place in world.stars}
     return Drawing(places, lines, crossing, whole.frame)
 
