@@ -82,7 +82,7 @@ class Exploration:
         self.steps, fault = replay(self.seen, self.query, ats, self.watch)
         if fault:
             self.faults.append(f"what was refused: {fault}")
-        self.watch.deadline = (time.monotonic() + now + seconds) / 2
+        self.watch.deadline = now + seconds * 2 / 3
         self._until("pictures", self._draw())
         self.watch.deadline = now + seconds
         self._until("counts by clingo", self._count())
@@ -313,7 +313,7 @@ def _shown(about: Exploration, at: Cube, number: int, glyphs: Glyphs) -> dict[st
     seen, drawn, step = about.seen, about.shapes[at], len(at) - 1
     scene = Scene(seen.map_of(at), at, about.name)
     known = len(glyphs.names)
-    body = svg.body(scene, replace(drawn, faces=()))
+    body = svg.body(scene, drawn)
     content = _last(drawn, at) + glyphs.use(body) + svg.agent(drawn, at[-1])
     place, slot = at[-1]
     name = (
@@ -370,7 +370,7 @@ def _map(scene: Scene, drawn: Drawing | None, agreed: Agreement) -> dict[str, An
     name += f", the agent at place {scene.at[-1][0]}, gateway {scene.at[-1][1]}"
     picture = ""
     if drawn:
-        content = svg.body(scene, drawn, apart, strange) + svg.agent(drawn, scene.at[-1])
+        content = svg.body(scene, drawn, False, apart, strange) + svg.agent(drawn, scene.at[-1])
         picture = svg.picture(name, drawn.frame, content, "map large")
     paths = [
         ", ".join(map(_label, path)) if len(path) > 1 else f"{_label(path[0])} (untravelled)"
@@ -380,6 +380,7 @@ def _map(scene: Scene, drawn: Drawing | None, agreed: Agreement) -> dict[str, An
         "number": number,
         "picture": Markup(picture),
         "sizes": _sizes(scene),
+        "numbered": bool(drawn and drawn.faces),
         "links": [
             (_label(out), _label(end), words.listed(along), having)
             for out, end, along, having in links

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 UNIT = 60  # the middle one of the links
 RADIUS = 11  # of a place
 APART, NARROW = 30, 15  # places, and in degrees gateways, if they are to be told
-FEW = 80, 400  # steps of the descent, for a small picture, until they are
+FEW, MANY = (80, 400), (300,)  # steps of the descent, in a small picture and a large one
 STUB = 22
 MARGIN = 20
 LONGEST = 16  # letters of a landmark in a picture
@@ -44,11 +44,11 @@ class Drawing:
 
 
 def drawing(world: TopologicalMap, ahead: Gateway | None, small: bool = False) -> Drawing | None:
-    """A drawing of a map; see ``layout.layout``. A small one has no faces, and is made in as few
-    steps as leave it legible; there is none if the gateways of a place cannot be told apart."""
+    """A drawing of a map (see ``layout.layout``), made in as few steps as leave it legible. A
+    small one has no faces, and there is none if the gateways of a place cannot be told apart."""
     from topomap import layout  # scipy takes its time
 
-    for steps in FEW if small else (layout.STEPS,):
+    for steps in FEW if small else MANY:
         laid = layout.layout(world, ahead, steps)
         unit, places, lines = _scaled(laid, world)
         narrowest = min((_narrowest(lines, *star) for star in world.stars.items()), default=360)
@@ -64,7 +64,7 @@ def drawing(world: TopologicalMap, ahead: Gateway | None, small: bool = False) -
     corner = min(xs) - MARGIN, min(ys) - MARGIN
     frame = (*corner, max(xs) + MARGIN - corner[0], max(ys) + MARGIN - corner[1])
     faces = []
-    if not small:
+    if not small and not laid.crossing:  # else they are not the map's
         from topomap.draw import inside  # so does matplotlib
 
         for number, face in enumerate(laid.faces, 1):
@@ -139,13 +139,17 @@ def _stub(line: Line) -> Line:
 
 
 def body(
-    scene: Scene, drawn: Drawing, apart: Collection[Link] = (), strange: Collection[Place] = ()
+    scene: Scene,
+    drawn: Drawing,
+    small: bool = True,
+    apart: Collection[Link] = (),
+    strange: Collection[Place] = (),
 ) -> str:
-    """The places, links, faces and pending gateways of a map. The links ``apart`` and the
-    ``strange`` places are set off."""
+    """The places, links and pending gateways of a map; if it is not small, the faces and the
+    steps too. The links ``apart`` and the ``strange`` places are set off."""
     world, steps = scene.world, scene.steps()
     parts = []
-    for number, outline, (x, y) in drawn.faces:
+    for number, outline, (x, y) in () if small else drawn.faces:
         parts.append(f'<path class="face f{number % 4}" d="{path(outline)}Z"/>')
         parts.append(f'<text class="face" x="{x}" y="{y}">{number}</text>')
     crossing = {end for link in drawn.crossing for end in link}
@@ -166,7 +170,7 @@ def body(
     for out, end in drawn.crossing:
         kind = "crossing apart" if (out, end) in apart or (end, out) in apart else "crossing"
         parts += _lines(kind, [_curve(drawn.lines[out], drawn.lines[end])])
-    if drawn.faces:
+    if not small:
         for gateway, end in world.edges():
             along = sorted(steps.get(gateway, []) + steps.get(end, []))
             parts.append(_along(drawn.lines[gateway], along))
