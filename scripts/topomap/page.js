@@ -53,6 +53,7 @@ for (const section of document.querySelectorAll(".exploration")) {
       go(where);
     }
   });
+  window.addEventListener("resize", () => show(Number(slider.value))); // the log's line moves
   section.classList.add("played");
   replay.querySelector(".player").hidden = false;
   show(0);
