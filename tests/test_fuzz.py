@@ -167,6 +167,7 @@ READERS = {  # the calls that read a file, and how to spoil it
             "count FILE --horizon 4 --timeout 5 --json -o out",
             "search FILE --timeout 5 --json -o out",
             "branching FILE --timeout 5 -o out",
+            "report FILE --timeout 5 --horizon 5 --maps 1 -o out",
         ],
         EDITS,
     ),

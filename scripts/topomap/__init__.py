@@ -30,6 +30,10 @@ searches without it, reads answers, checks and compares them.
 ``figures``         the paper's figures, from computed answers
 ``terminal``        maps in the lines of a terminal, and in words
 ``exports``         maps for other tools: GraphML, JSON, DOT, clingraph
+``replay``          explorations step by step: what to show, what was refused
+``words``           explorations in words
+``svg``             small pictures for a page
+``page``            the page of an exploration (page.html, page.css, page.js)
 ``family``          files that list the instances of a batch
 ``files``           inputs within a limit; outputs that are whole or not there
 ``commands``        what each subcommand does

@@ -8,7 +8,7 @@ from collections.abc import Iterable, Sequence
 from functools import cache
 from typing import Any, NoReturn
 
-from topomap import __version__, commands, exports, maps, pictures
+from topomap import __version__, commands, exports, maps, page, pictures
 from topomap.environment import MOST_STEPS
 from topomap.errors import BAD_INPUT, DONE, INTERRUPTED, PARTIAL, InputError, say
 from topomap.experience import LARGEST
@@ -82,6 +82,7 @@ def _parser() -> Parser:
     _add_table(group)
     _add_family(group)
     _add_draw(group)
+    _add_report(group)
     _add_figures(group)
     _add_show(group)
     _add_export(group)
@@ -469,6 +470,32 @@ def _add_draw(group: Any) -> None:
     command.add_argument(
         "-o", "--output", required=True, metavar="FILE", help="FILE.svg, FILE.png or FILE.pdf"
     )
+
+
+def _add_report(group: Any) -> None:
+    command = _command(
+        group,
+        "report",
+        page.report,
+        "tell all about explorations in one page to be opened in a browser: the log, how many "
+        "hypotheses, what was refused, the best maps, and a replay step by step; what is not "
+        "counted or drawn within --timeout (default: 60) says so",
+        """\
+  topomap report instances/grid-3x3-snake.lp -o report.html
+  topomap report instances/grid-4x4-snake.lp --bound 16 --timeout 120 -o report.html""",
+    )
+    add = command.add_argument
+    add("instance", nargs="+", metavar="INSTANCE")
+    add(
+        "--maps",
+        type=_number(int, 0),
+        default=6,
+        metavar="N",
+        help="draw N of the best maps at most (default: %(default)s)",
+    )
+    add("-o", "--output", metavar="FILE", help="file to write (default: stdout)")
+    _add_asked(command, PRUNING)
+    command.set_defaults(timeout=60.0)
 
 
 def _add_figures(group: Any) -> None:

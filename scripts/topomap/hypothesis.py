@@ -5,7 +5,7 @@ is changed in place: a step is entered, and undone. A gateway is the number
 ``place * slots + slot``; a place is named by the step at which it was first visited.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from itertools import combinations
 from typing import Any, NamedTuple
 
@@ -13,6 +13,9 @@ from topomap.experience import DState, Experience
 from topomap.topology import TopologicalMap
 
 Face = tuple[int, ...]
+# What refuses an arrival: another view is seen there, or other landmarks; a place would be on a
+# path twice, or the path circular; and what was asked for.
+RULES = ("view", "landmark", "twice", "circular", "planarity", "perpendicular", "bound")
 
 
 class Link(NamedTuple):
@@ -153,6 +156,36 @@ class Hypothesis:
         if self.bound is None or self.places < self.bound:
             arrivals.append((self.steps + 1) * self.slots)
         return arrivals
+
+    def tried(self) -> Iterator[tuple[int, str | None]]:
+        """Where the next step might arrive: at the other end of its link; or if that is not
+        known, at any other pending gateway, or a new place. Each with the first of ``RULES``
+        that refuses it; the children are those that none does."""
+        out = self.out()
+        if out in self.links:
+            yield self.links[out], self._mistaken(self.links[out])
+            return
+        face = self.face(out)
+        for gateway in (g for face in self.faces for g in face if g != out):
+            rule = self._mistaken(gateway)
+            if rule is None and not self._joins(out, gateway):
+                paths = self.path(out), self.path(gateway)
+                common = self.paths[paths[0]] & self.paths[paths[1]]
+                rule = "twice" if common else "perpendicular"
+                rule = "circular" if paths[0] == paths[1] else rule
+            if rule in (None, "perpendicular") and self.planar and gateway not in face:
+                rule = "planarity"
+            yield gateway, rule
+        full = self.bound is not None and self.places >= self.bound
+        yield (self.steps + 1) * self.slots, "bound" if full else None
+
+    def _mistaken(self, gateway: int) -> str | None:
+        """The rule by which the next step, which sees something, did not arrive at a gateway."""
+        step, (place, slot) = self.steps + 1, divmod(gateway, self.slots)
+        if self.views[gateway] == self.views[step * self.slots]:
+            return None
+        star = {(other - slot) % self.slots for other in self.experience.views[place]}
+        return "landmark" if star == self.experience.views[step] else "view"
 
     def _joins(self, out: int, arrival: int) -> bool:
         """Whether a link between the gateways respects the path axiom, and ``perpendicular``:

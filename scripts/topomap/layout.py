@@ -31,6 +31,7 @@ BENDS = 3  # inner points of a link that is not straight
 SHORTEST = 0.4  # link in a drawing by the compass
 MEMORY = 20  # steps that the descent remembers
 WEIGHTS = 100.0, 10.0, 1.0, 0.1, 0.01, 0.002  # of the triangles, one after the other
+STEPS = 1500  # of the descent, at most, with each weight
 
 
 @dataclass(frozen=True)
@@ -54,16 +55,16 @@ class Layout:
         return np.concatenate([self.lines[gateway][:-1] for gateway in face])
 
 
-def layout(world: TopologicalMap, ahead: Gateway | None = None) -> Layout:
+def layout(world: TopologicalMap, ahead: Gateway | None = None, steps: int = STEPS) -> Layout:
     """A drawing of a connected map. ``ahead`` is a gateway that is left to the right of the
-    picture (else the first one)."""
+    picture (else the first one); fewer ``steps`` do for a small picture."""
     part = planar_part(world)
     crossing = [(out, end) for out, end in world.edges() if out not in part.links]
     faces, outer = faces_of(part)
     north, fits = compass(part)
     lines = _straight(part, north) if fits else None
     if lines is None:
-        lines = _bent(part, faces, outer, crossing)
+        lines = _bent(part, faces, outer, crossing, steps)
     first = ahead or next(world.gateways(), None)
     if first is None:
         return Layout({place: np.zeros(2) for place in world.stars}, {}, faces, outer, [])
@@ -406,6 +407,7 @@ def _bent(
     faces: list[list[Gateway]],
     outer: int,
     crossing: list[tuple[Gateway, Gateway]],
+    steps: int,
 ) -> dict[Gateway, Points]:
     """Lines with bends, in a drawing in which no triangle of the mesh is folded; stubs that
     are the ends of one link not far apart."""
@@ -427,7 +429,7 @@ def _bent(
 
     x = np.concatenate([points[free].ravel(), shape.norths(points)])
     for weight in WEIGHTS:
-        x = _descend(energy(weight), x, 1500)
+        x = _descend(energy(weight), x, steps)
     points = drawing(x)
     return {gateway: points[line] for gateway, line in mesh.lines.items()}
 

@@ -1,0 +1,64 @@
+"""An exploration in words."""
+
+from collections.abc import Collection
+
+from topomap.experience import Experience
+
+MOST = 24  # gateways of a view that are told one by one
+RULES = {
+    "view": "another view is seen there",
+    "landmark": "other landmarks are seen there",
+    "twice": "a place would be on a path twice",
+    "circular": "a path would be circular",
+    "planarity": "the gateways are not on one face",
+    "perpendicular": "it would not be perpendicular",
+    "bound": "there would be too many places",
+}
+
+
+def number(count: int, noun: str, nouns: str | None = None) -> str:
+    """So many of them."""
+    return f"{count:,} {noun if count == 1 else nouns or noun + 's'}"
+
+
+def direction(slot: int, slots: int) -> str:
+    """A slot, counted clockwise from the gateway arrived by."""
+    if slot == 0:
+        return "back"
+    if slot == slots // 2:
+        return "straight on"
+    side = "left" if slot < slots // 2 else "right"
+    return side if slots == 4 else f"{side} ({_clockwise(slot)})"
+
+
+def _clockwise(slot: int) -> str:
+    return f"{number(slot, 'slot')} clockwise"
+
+
+def turn(experience: Experience, step: int) -> str:
+    """What is done at a step."""
+    if step == 0:
+        return "start"
+    slot = experience.turns[step - 1]
+    if step == 1:
+        return f"leave {'by the gateway stood at' if slot == 0 else _clockwise(slot)}"
+    return direction(slot, experience.slots)
+
+
+def view(experience: Experience, step: int) -> str:
+    """The gateways that are seen after a step."""
+    seen = sorted(experience.views[step])
+    told = seen[:MOST]
+    if step == 0:
+        words = ["where it stands" if slot == 0 else _clockwise(slot) for slot in told]
+    else:
+        words = [direction(slot, experience.slots) for slot in told]
+    if len(seen) > MOST:
+        words.append(f"{len(seen) - MOST:,} more")
+    return f"{number(len(seen), 'way')}: {', '.join(words)}"
+
+
+def listed(numbers: Collection[int], most: int = 8) -> str:
+    """Numbers in a row, the first of them if they are many."""
+    first = ", ".join(map(str, sorted(numbers)[:most]))
+    return first + (f" and {len(numbers) - most:,} more" if len(numbers) > most else "")
