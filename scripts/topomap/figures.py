@@ -10,7 +10,7 @@ import matplotlib as mpl
 import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
-from matplotlib.ticker import MaxNLocator
+from matplotlib.ticker import MaxNLocator, NullFormatter
 
 from topomap import branching, draw, figure4, scenes, search, solver
 from topomap.environment import grid
@@ -140,6 +140,9 @@ def growth(watch: Watch) -> Figure:
                     axes.semilogy(per_step, ".-", color=colour, label=label, lw=1.2, ms=4)
             axes.set_title(f"{name}, at most {places} places" if places else name, fontsize=9)
             axes.set_xlabel("step", fontsize=8)
+            # matplotlib would write powers as formulas, which STYLE does not read.
+            axes.yaxis.set_major_formatter("{x:,.0f}")
+            axes.yaxis.set_minor_formatter(NullFormatter())
             axes.xaxis.set_major_locator(MaxNLocator(integer=True))
             _plain(axes)
         figure.axes[0].set_ylabel("maps consistent so far", fontsize=8)

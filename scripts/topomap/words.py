@@ -1,10 +1,13 @@
 """An exploration in words."""
 
+import re
 from collections.abc import Collection
 
+from topomap.errors import printable
 from topomap.experience import Experience
 
 MOST = 24  # gateways of a view that are told one by one
+LONGEST = 16  # letters of the landmarks of a place, in a picture
 RULES = {
     "view": "another view is seen there",
     "landmark": "other landmarks are seen there",
@@ -62,3 +65,18 @@ def listed(numbers: Collection[int], most: int = 8) -> str:
     """Numbers in a row, the first of them if they are many."""
     first = ", ".join(map(str, sorted(numbers)[:most]))
     return first + (f" and {len(numbers) - most:,} more" if len(numbers) > most else "")
+
+
+def short(text: str, most: int) -> str:
+    """The beginning of a text that is too long."""
+    return text if len(text) <= most else text[: most - 1] + "…"
+
+
+def signs(landmarks: Collection[str]) -> str:
+    """The landmarks of a place in a picture: strings without their quotes, in one line."""
+    return short(", ".join(printable(_unquoted(sign)) for sign in sorted(landmarks)), LONGEST)
+
+
+def _unquoted(sign: str) -> str:
+    string = re.fullmatch(r'"(.*)"', sign, re.DOTALL)
+    return re.sub(r'\\(["\\])', r"\1", string[1]) if string else sign
