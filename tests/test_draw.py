@@ -8,6 +8,7 @@ import signal
 import subprocess
 import sys
 import time
+import warnings
 from io import BytesIO
 from itertools import combinations, pairwise
 
@@ -15,19 +16,23 @@ import numpy as np
 import pytest
 from conftest import ROOT, run
 from defusedxml import ElementTree
-from topomap import draw, search
+from topomap import draw, search, words
 from topomap.environment import grid, lattice
+from topomap.experience import read
 from topomap.generate import instance
 from topomap.layout import layout, planar_part
 from topomap.pictures import FORMATS
 from topomap.scenes import Scene
 from topomap.solver import Query, Watch
-from topomap.topology import TopologicalMap
+from topomap.topology import TopologicalMap, label
 from worlds import WORLDS, random_experience
 
 QUIET = Watch(quiet=True)
 GRID = "instances/grid-3x3-snake.lp"
 NUMBER = r"-?\d+(?:\.\d+)?"
+RADIUS = draw.RADIUS * draw.UNIT * 72  # of a place, in the units of a picture
+ODD = ['"$x^$_{"', 'f("a$b")', '"日本"', '"\t"', f'"{"W" * 200}"', '"😀"', '"a\\"b"', '"$"']
+SHOWN = ["$x^$_{", 'f("a$b")', "日本", "\\t", "W" * 15 + "…", "😀", 'a"b', "$"]
 
 
 def some_map(number, *parts, steps=14):
@@ -74,6 +79,33 @@ def clockwise(lines, place):
     return order[least:] + order[:least]
 
 
+def ticks_and_dots(world, lines, drawn):
+    """Each place shows its gateways in their order, clockwise from the dot at gateway 0."""
+    for place, star in world.stars.items():
+        centre = middle(drawn[f"place-{place}"])
+        path = next(iter(drawn[f"ticks-{place}"])).get("d")
+        points = np.array(re.findall(f"({NUMBER}) ({NUMBER})", path), float) * [1, -1]
+        outs = points[1::2] - points[::2]
+        assert len(outs) == len(star)
+        assert np.allclose(np.linalg.norm(points[::2] - centre, axis=1), RADIUS, atol=0.01)
+        for slot, out in zip(sorted(star), outs, strict=True):
+            way = lines[place, slot][1] - lines[place, slot][0]
+            assert np.allclose(out / np.linalg.norm(out), way / np.linalg.norm(way), atol=1e-3)
+        turns = -np.arctan2(*outs.T[::-1])
+        around = (turns - turns[0]) % (2 * np.pi)
+        assert (np.diff(around) > 0).all()
+        assert (f"zero-{place}" in drawn) == (0 in star)
+        if 0 in star:
+            assert np.allclose(middle(drawn[f"zero-{place}"]), points[0], atol=0.01)
+
+
+def middle(group):
+    """Of a circle."""
+    path = next(iter(group)).get("d")
+    points = np.array(re.findall(f"({NUMBER}) ({NUMBER})", path), float) * [1, -1]
+    return (points.min(0) + points.max(0)) / 2
+
+
 def cross(a, b, c, d):
     """Whether two line segments meet."""
 
@@ -113,8 +145,15 @@ def check(scene):
         assert np.allclose(lines[gateway], lines[end][::-1])
         assert np.allclose(lines[gateway][-1], lines[end][0])
     no_two_cross(part, lines)
-    faces = {name for name in drawn if name.startswith("face-")}
-    assert len(faces) == len(part.faces()) - 1
+    ticks_and_dots(world, lines, drawn)
+    faces, numbers = (
+        {int(name.split("-")[1]) for name in drawn if name.startswith(kind)}
+        for kind in ("face-", "number-")
+    )
+    count = 0 if crossing else len(world.faces())
+    assert numbers == set(range(1, count + 1))
+    assert len(faces) == max(0, count - 1)
+    assert faces <= numbers
     if scene.at:
         assert f"agent-{draw.gid(scene.at[-1])}" in drawn
     return lines
@@ -223,6 +262,104 @@ def test_maps_from_a_file(tmp_path, topomap):
     assert same == (at[0] < at[1])
 
 
+def odd(name):
+    """An instance: a row of places, each with a landmark that is hard to write."""
+    lines = [f"slots(4). view(0,0). landmark(0,{ODD[0]})."]
+    for step, sign in enumerate(ODD[1:], 1):
+        turn, ahead = 2 * (step > 1), f"view({step},2)." * (step < len(ODD) - 1)
+        lines.append(f"turn({step},{turn}). view({step},0). {ahead} landmark({step},{sign}).")
+    name.write_text("\n".join(lines))
+    return name
+
+
+@pytest.mark.parametrize("form", FORMATS)
+def test_any_text_can_be_drawn(tmp_path, topomap, form):
+    """As it is, without a word on stderr."""
+    instance = odd(tmp_path / "a $5 map, $x^$_{ 日本.lp")
+    picture = tmp_path / f"$x^$_{{.{form}"
+    done = topomap("draw", instance, "-o", picture)
+    assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
+    if form == "svg":
+        texts = [text.text for text in svg_texts(picture.read_bytes())]
+        assert set(SHOWN) <= set(texts)
+        assert "a $5 map, $x^$_{ 日本: the only map, optimal" in texts
+
+
+def svg_texts(content):
+    return ElementTree.fromstring(content).iter("{http://www.w3.org/2000/svg}text")
+
+
+def test_landmarks_in_words():
+    assert [words.signs([sign]) for sign in ODD] == SHOWN
+    assert words.signs({'"red"', "blue"}) == "red, blue"
+    assert words.signs({'"a b"', '"c"', '"d e f g h i j"'}) == "a b, c, d e f g…"
+
+
+@pytest.mark.parametrize("name", ["a", "a" * 200, "many words " * 9, "W" * 90, "日" * 60])
+def test_no_text_is_cut_off(tmp_path, name):
+    """Nor is a title over another one."""
+    experience = read(odd(tmp_path / "odd.lp"))
+    at = tuple((step, 0) for step in range(experience.steps + 1))
+    scenes = [Scene(experience.map_of(at), at, f"there/{name}.lp", kind="odd " * 30)]
+    for several in (scenes, scenes * 5):
+        figure = draw.picture(several)
+        place(figure)
+        width, height = figure.bbox.size
+        boxes = [axes.title.get_window_extent() for axes in figure.axes]
+        assert not any(a.overlaps(b) for a, b in combinations(boxes, 2))
+        for axes in figure.axes:
+            assert axes.get_title().startswith(name[:20].strip())
+            assert "there" not in axes.get_title()
+            boxes += [text.get_window_extent() for text in axes.texts if text.get_text()]
+        for box in boxes:
+            assert box.x0 >= 0
+            assert box.y0 >= 0
+            assert box.x1 <= width
+            assert box.y1 <= height
+
+
+def place(figure):
+    """So that everything is where it is drawn."""
+    with warnings.catch_warnings(action="ignore"):
+        figure.canvas.draw()
+
+
+def test_landmarks_are_in_the_widest_gap():
+    """Of a place on a border of the grid that is outside, and there they cover nothing."""
+    world = grid(3, 3).map
+    named = TopologicalMap(
+        4, world.stars, world.links, {p: frozenset({f'"{label(p)} sign"'}) for p in world.stars}
+    )
+    figure = draw.picture([Scene(named, (), "signs")])
+    place(figure)
+    (axes,) = figure.axes
+    boxes = {
+        text.get_gid(): text.get_window_extent().transformed(axes.transData.inverted())
+        for text in axes.texts
+    }
+    laid = layout(named)
+    for (row, column), (x, y) in laid.places.items():
+        box = boxes[f"sign-{row},{column}"]
+        assert not (box.x0 < x < box.x1 and box.y0 < y < box.y1)
+        assert (row != 0) or box.y0 > y
+        assert (row != 2) or box.y1 < y
+        if row == 1 and column != 1:
+            assert (box.x1 < x) if column == 0 else (box.x0 > x)
+    for one, other in combinations(boxes, 2):
+        if boxes[one].overlaps(boxes[other]):
+            assert "sign-" not in one + other, (one, other)
+
+
+def test_titles_tell_how_many_links_cross():
+    scene = next(s for s in (some_map(n) for n in range(10)) if s.world.genus() > 0)
+    crossing = len(layout(scene.world).crossing)
+    (axes,) = draw.picture([scene]).axes
+    told = "1 link crosses" if crossing == 1 else f"{crossing} links cross"
+    title = " ".join(axes.get_title().split())
+    assert title.endswith(f"genus {scene.world.genus()}, {told} others")
+    assert not [text for text in axes.texts if "outer" in text.get_text()]
+
+
 @pytest.mark.parametrize(
     ("change", "fault"),
     [
@@ -284,7 +421,7 @@ def test_no_map_and_no_time_leave_no_picture(tmp_path):
 def test_interrupted_figures_say_so(tmp_path):
     call = [sys.executable, "-m", "topomap", "figures", "-d", str(tmp_path)]
     with subprocess.Popen(call, cwd=ROOT, stderr=subprocess.PIPE, text=True) as process:
-        while not any(tmp_path.glob("figure*")):
+        while not any(tmp_path.glob("figure*")) and process.poll() is None:
             time.sleep(0.05)
         process.send_signal(signal.SIGINT)
         _, told = process.communicate(timeout=60)

@@ -27,6 +27,7 @@ from topomap import words
 from topomap.errors import printable
 from topomap.layout import Layout, Points, layout
 from topomap.scenes import Scene
+from topomap.svg import gaps
 from topomap.topology import Gateway, Place, TopologicalMap, gid, label
 
 INK, LINK, CROSSING, PENDING = "#1b1b1b", "#3d4a57", "#c2332d", "#2f7fc1"
@@ -36,7 +37,7 @@ RADIUS = 0.15  # of a place's circle, where a link is of length 1
 DASHES: Any = (0, (4, 2))
 UNIT = 0.8  # inches that a link of length 1 takes
 MARGIN = 0.35  # round all lines
-LEAST, TITLE, WIDEST = 4.5, 9, 4.3  # inches of a picture; points, and inches, of a title
+LEAST, TITLE, WIDEST = 4.5, 9, 3.2  # inches of a picture; points, and inches, of a title
 STYLE: Any = {
     "text.parse_math": False,  # a name may have a "$"
     "svg.hashsalt": "topomap",
@@ -76,7 +77,8 @@ def draw(axes: Axes, scene: Scene, faces: bool = True, route: bool = True) -> La
     low = np.min([*(points - MARGIN), *(corners - 0.06)], axis=0)
     high = np.max([*(points + MARGIN), *(corners + 0.06)], axis=0)
     if faces and not laid.crossing:
-        low[1] -= 0.12
+        # Room for the number of the outer face, below all else.
+        low[1] = min([points[:, 1].min() - MARGIN - 0.12, *(corners[:, 1] - 0.26)])
         _draw_faces(axes, laid, [*texts, *taken], low + 0.06)
     if at:
         _draw_agent(axes, laid, at[-1])
@@ -229,15 +231,6 @@ def _out(line: Points) -> Points:
     return np.asarray((line[1] - line[0]) / np.linalg.norm(line[1] - line[0]))
 
 
-def gaps(directions: Sequence[float]) -> list[tuple[float, float]]:
-    """The gaps between directions, in radians: the width of each, and its middle; those up and
-    to the right, where a text is looked for, before the others of their width."""
-    order = sorted(directions) or [-2.4]
-    pairs = zip(order, [*order[1:], order[0] + 2 * np.pi], strict=True)
-    found = [(round(b - a, 3), (a + b) / 2) for a, b in pairs]
-    return sorted(found, key=lambda gap: (-gap[0], round(-cos(gap[1] - 0.9), 3)))
-
-
 def _draw_signs(
     axes: Axes, world: TopologicalMap, laid: Layout, place: Place, taken: Sequence[Box]
 ) -> Box:
@@ -370,35 +363,41 @@ def _inches(figure: Figure, made: Legend) -> tuple[float, float]:
 
 
 def picture(scenes: Sequence[Scene], columns: int = 3) -> Figure:
-    """Maps side by side, and a legend: in one scale, each in the middle of as much room as the
-    largest needs, below a title as wide as that."""
+    """Maps side by side, in one scale, each in the middle of as much room as the largest in its
+    row or column needs, below a title that is not wider; and a legend."""
     with mpl.rc_context(STYLE):
         figure = Figure()
         FigureCanvasAgg(figure)
         columns = min(columns, len(scenes))
-        rows = -(-len(scenes) // columns)
         panels = [figure.add_axes((0, 0, 1, 1)) for _ in scenes]
         for scene, axes in zip(scenes, panels, strict=True):
             draw(axes, scene)
-        width, height = np.max([_spans(axes) for axes in panels], axis=0)
+        spans = UNIT * np.array([_spans(axes) for axes in panels])
         lines = [line for axes in panels for line in axes.get_title().splitlines()]
         longest = max(extent(line, TITLE) for line in lines) + 0.2
-        wide = max(width * UNIT, LEAST / columns, min(longest, WIDEST))
-        titles = [_wrapped(axes.get_title(), wide - 0.2) for axes in panels]
-        head = max(map(len, titles)) * TITLE * 1.2 / 72 + 0.15
-        high = height * UNIT + head
-        foot = _inches(figure, legend(figure, scenes, columns * wide))[1]
-        total = columns * wide, rows * high + foot
-        figure.set_size_inches(total)
+        least = max(LEAST / columns, min(longest, WIDEST))
+        wide = [max(least, *spans[n::columns, 0]) for n in range(columns)]
+        titles = [
+            _wrapped(axes.get_title(), wide[n % columns] - 0.2) for n, axes in enumerate(panels)
+        ]
+        rows = range(0, len(scenes), columns)
+        heads = [max(map(len, titles[n : n + columns])) * TITLE * 1.2 / 72 + 0.15 for n in rows]
+        high = [max(spans[n : n + columns, 1]) for n in rows]
+        foot = _inches(figure, legend(figure, scenes, sum(wide)))[1]
+        size = np.array([sum(wide), sum(heads) + sum(high) + foot])
+        figure.set_size_inches(*size)
         for n, (axes, told) in enumerate(zip(panels, titles, strict=True)):
             axes.set_title("\n".join(told), fontsize=TITLE, color=INK, pad=5)
-            (x0, x1), (y0, y1) = axes.get_xlim(), axes.get_ylim()
-            axes.set_xlim((x0 + x1 - width) / 2, (x0 + x1 + width) / 2)
-            axes.set_ylim((y0 + y1 - height) / 2, (y0 + y1 + height) / 2)
-            left = (n % columns + 0.5) * wide - width * UNIT / 2
-            bottom = foot + (rows - 1 - n // columns) * high
-            box = left, bottom, left + width * UNIT, bottom + height * UNIT
-            axes.set_position(Bbox(np.reshape(box, (2, 2)) / total))
+            row, column = divmod(n, columns)
+            x = sum(wide[:column]) + wide[column] / 2
+            y = size[1] - sum(heads[: row + 1]) - sum(high[:row]) - high[row] / 2
+            # As high as the row, so that the titles are in line.
+            half = np.array([spans[n, 0], high[row]]) / 2
+            low, top = axes.get_ylim()
+            middle = (low + top) / 2
+            axes.set_ylim(middle - half[1] / UNIT, middle + half[1] / UNIT)
+            centre = np.array([x, y])
+            axes.set_position(Bbox([(centre - half) / size, (centre + half) / size]))
     return figure
 
 

@@ -22,6 +22,7 @@ from topomap.solver import Query, Stopped, Watch
 
 WALKS = ("#c2332d", "#2f7fc1", "#2e7d4f", "#e07b00", "#7a4fa3")
 BLUE, ORANGE = "#2f7fc1", "#e07b00"
+PLANAR, ANY = ("planar", BLUE, "s--"), ("any", ORANGE, "o-")
 
 
 def figures(folder: Path, watch: Watch) -> dict[str, Callable[[], Figure]]:
@@ -105,9 +106,15 @@ def figure3(watch: Watch) -> Figure:
             style = {"fontsize": 7, "ha": "center", "va": "center", "rotation": turn}
             left.text(x, y, text, color=colour, **style)
         laid = draw.draw(right, titled(scene, "(b) the walks round its three faces"), False, False)
+        low = np.min(list(laid.places.values()), axis=0)
         for number, face in enumerate(laid.faces):
+            colour = WALKS[number % len(WALKS)]
             for gateway in face:
-                _arrow(right, _beside(laid.lines[gateway], 0.12), WALKS[number % len(WALKS)])
+                _arrow(right, _beside(laid.lines[gateway], 0.12), colour)
+            is_outer = number == laid.outer
+            x, y = low - [0, 0.28] if is_outer else draw.inside(laid.outline(face))
+            name = f"{number + 1}{' (outer)' * is_outer}"
+            right.text(x, y, name, color=colour, fontsize=9, ha="center", va="center")
         figure.subplots_adjust(0.01, 0.02, 0.99, 0.84, 0.05)
     return figure
 
@@ -136,8 +143,8 @@ def growth(watch: Watch) -> Figure:
             for column, per_step in rows:
                 if column["environment"] == name:
                     places = column["places"]
-                    label, colour = ("planar", BLUE) if column["planarity"] else ("any", ORANGE)
-                    axes.semilogy(per_step, ".-", color=colour, label=label, lw=1.2, ms=4)
+                    label, colour, line = PLANAR if column["planarity"] else ANY
+                    axes.semilogy(per_step, line, color=colour, label=label, lw=1.2, ms=2.5)
             axes.set_title(f"{name}, at most {places} places" if places else name, fontsize=9)
             axes.set_xlabel("step", fontsize=8)
             # matplotlib would write powers as formulas, which STYLE does not read.

@@ -16,7 +16,7 @@ import clingo
 from topomap import __version__, experience, scenes, solver, svg, words
 from topomap.agreement import Agreement
 from topomap.commands import exit_status
-from topomap.errors import InputError, say
+from topomap.errors import InputError, printable, say
 from topomap.experience import LARGEST, Experience
 from topomap.files import output
 from topomap.replay import MOST, SHOWN, Step, fate, in_force, replay
@@ -27,6 +27,7 @@ from topomap.topology import Gateway
 
 FOLDER = Path(__file__).parent
 SMALL = 100  # places in a small picture, at most
+LARGER = 1.7  # than its units are the picture of a best map, where there is room
 ROOM = 2_000_000  # letters that small pictures of one exploration take, about
 
 
@@ -232,7 +233,8 @@ def _about(args: argparse.Namespace, number: int, about: Exploration) -> dict[st
         steps.append({"alive": alive, "shown": shown, "more": more, **log[step]})
     steps.reverse()
     rules = in_force(about.query, seen)
-    name = f"Hypotheses after each step of {about.name}, on a logarithmic scale"
+    stem = printable(Path(about.name).stem)
+    name = f"Hypotheses after each step of {stem}, on a logarithmic scale"
     agreed = Agreement([scene.at for scene in about.best], seen)
     maps = [
         _map(scene, about.shapes.get(tuple(scene.at)), agreed) for scene in about.best[: args.maps]
@@ -320,7 +322,7 @@ def _shown(about: Exploration, at: Cube, number: int, glyphs: Glyphs) -> dict[st
         f"the agent at place {place}, gateway {slot}"
     )
     picture = svg.picture(name, drawn.frame, content)
-    children, rule = fate(seen, about.query, at)
+    children, rule, refused = fate(seen, about.query, at)
     if step == seen.steps:
         next = "a map of the whole exploration"
     elif children:
@@ -334,6 +336,7 @@ def _shown(about: Exploration, at: Cube, number: int, glyphs: Glyphs) -> dict[st
         "sizes": _sizes(scene),
         "at": f"at place {place}, gateway {slot}",
         "next": next,
+        "refused": words.refused(refused, step + 1),
         "ends": not children and step < seen.steps,
         "begun": f"{'map' if len(begun) == 1 else 'maps'} {words.listed(begun, 4)}"
         if begun
@@ -370,7 +373,7 @@ def _map(scene: Scene, drawn: Drawing | None, agreed: Agreement) -> dict[str, An
     picture = ""
     if drawn:
         content = svg.body(scene, drawn, False, apart, strange) + svg.agent(drawn, scene.at[-1])
-        picture = svg.picture(name, drawn.frame, content, "map large")
+        picture = svg.picture(name, drawn.frame, content, "map large", LARGER)
     paths = [
         ", ".join(map(_label, path)) if len(path) > 1 else f"{_label(path[0])} (untravelled)"
         for path in world.paths()

@@ -10,6 +10,7 @@ from topomap import search
 from topomap.experience import Experience
 from topomap.hypothesis import RULES, Hypothesis
 from topomap.solver import MEMORY, Cube, Query, Stopped, Watch
+from topomap.topology import Gateway
 
 MOST = 20_000  # hypotheses of a step that are all looked at
 KEPT = 500  # of more of them: these, the first by the order
@@ -110,11 +111,19 @@ def in_force(query: Query, experience: Experience) -> list[str]:
     return [rule for rule in RULES if not never.get(rule)]
 
 
-def fate(experience: Experience, query: Query, at: Cube) -> tuple[int, str]:
-    """How many children a hypothesis has, and if none, the rule that ended it."""
+def fate(
+    experience: Experience, query: Query, at: Cube
+) -> tuple[int, str, dict[str, list[Gateway]]]:
+    """How many children a hypothesis has, and if none, the rule that ended it; and the arrivals
+    that are refused, by rule. That at a new place is at gateway 0 of the place named by its
+    step."""
     node = search.root(experience, query)
     node.goto(at)
     if node.steps == node.experience.steps:
-        return 0, ""
+        return 0, "", {}
     tried = list(node.tried())
-    return sum(rule is None for _, rule in tried), tried[-1][1] or ""
+    refused: dict[str, list[Gateway]] = {}
+    for rule in RULES:
+        found = sorted(divmod(arrival, node.slots) for arrival, why in tried if why == rule)
+        refused |= {rule: [*found]} if found else {}
+    return sum(rule is None for _, rule in tried), tried[-1][1] or "", refused

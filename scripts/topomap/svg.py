@@ -5,12 +5,14 @@ units, so that the text is short.
 """
 
 import math
+import unicodedata
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from html import escape
 from itertools import combinations, pairwise
 from typing import TYPE_CHECKING, Any
 
+from topomap import words
 from topomap.scenes import Scene
 from topomap.topology import Gateway, Place, TopologicalMap, label
 
@@ -23,24 +25,27 @@ APART, NARROW = 30, 15  # places, and in degrees gateways, if they are to be tol
 FEW, MANY = (80, 400), (300,)  # steps of the descent, in a small picture and a large one
 STUB = 22
 MARGIN = 20
-LONGEST = 16  # letters of a landmark in a picture
+LETTER, HIGH, GAP = 6.6, 13, 4  # of a landmark: a letter, a line, and what is left round it
 
 Point = tuple[int, int]
 Line = list[Point]
 Link = tuple[Gateway, Gateway]
+Box = tuple[int, int, int, int]  # left, top, width, height
 
 
 @dataclass(frozen=True)
 class Drawing:
     """Where a map is drawn: places, of each gateway the line that leaves by it, y downwards; the
-    links that cross others, as stubs; the frame, x, y, width and height; and faces, each its
-    outline and a point in it."""
+    links that cross others, as stubs; the frame, x, y, width and height; faces, each its
+    outline and a point in it, the outer one without an outline; and where the landmarks of
+    places begin."""
 
     places: Mapping[Place, Point]
     lines: Mapping[Gateway, Line]
     crossing: Sequence[Link]
     frame: tuple[int, int, int, int]
     faces: Sequence[tuple[int, Line, Point]] = ()
+    signs: Mapping[Place, Point] = field(default_factory=dict)
 
 
 def drawing(world: TopologicalMap, ahead: Gateway | None, small: bool = False) -> Drawing | None:
@@ -60,18 +65,111 @@ def drawing(world: TopologicalMap, ahead: Gateway | None, small: bool = False) -
     points = [*places.values(), *(p for line in lines.values() for p in line)]
     for out, end in laid.crossing:
         points += _between(lines[out], lines[end])
-    xs, ys = zip(*points, strict=True)
-    corner = min(xs) - MARGIN, min(ys) - MARGIN
-    frame = (*corner, max(xs) + MARGIN - corner[0], max(ys) + MARGIN - corner[1])
-    faces = []
+    signs = _signs(world, places, lines)
+    texts = [_box(world, place, point) for place, point in signs.items()]
+    frame = _frame(points, texts)
+    faces: list[tuple[int, Line, Point]] = []
     if not small and not laid.crossing:  # else they are not the map's
         from topomap.draw import inside  # so does matplotlib
 
+        taken = [(*_turned(x, y + high), *_turned(x + wide, y)) for x, y, wide, high in texts]
+        x, y, wide, high = frame
         for number, face in enumerate(laid.faces, 1):
-            if number - 1 != laid.outer:
+            if number - 1 == laid.outer:
+                faces.append((number, [], (x + 6, y + high + 2)))
+                frame = (x, y, max(wide, 64), high + 14)
+            else:
                 outline = unit * laid.outline(face)
-                faces.append((number, [_point(p) for p in outline], _point(inside(outline))))
-    return Drawing(places, lines, laid.crossing, frame, faces)
+                middle = _point(inside(outline, taken))
+                faces.append((number, [_point(p) for p in outline], middle))
+    return Drawing(places, lines, laid.crossing, frame, faces, signs)
+
+
+def _frame(points: Sequence[Point], texts: Sequence[tuple[int, int, int, int]]) -> Box:
+    """What is round points, with a margin, and texts."""
+    sides = (-1, 1)
+    corners = [(x + a * MARGIN, y + b * MARGIN) for x, y in points for a in sides for b in sides]
+    corners += [corner for x, y, wide, high in texts for corner in ((x, y), (x + wide, y + high))]
+    xs, ys = zip(*corners, strict=True)
+    return min(xs), min(ys), max(xs) - min(xs), max(ys) - min(ys)
+
+
+def _turned(x: int, y: int) -> tuple[float, float]:
+    """A point as in a layout, y upwards."""
+    return float(x), float(-y)
+
+
+def _wide(text: str) -> int:
+    """The width of a text, about: the font is the reader's."""
+    wide = sum(1 + (unicodedata.east_asian_width(c) in "WF" or c in "MWmw") for c in text)
+    return round(LETTER * wide)
+
+
+def _box(world: TopologicalMap, place: Place, point: Point) -> Box:
+    """What the landmarks of a place cover, if they begin there."""
+    return (*point, _wide(words.signs(world.landmarks[place])), HIGH)
+
+
+def _signs(
+    world: TopologicalMap, places: Mapping[Place, Point], lines: Mapping[Gateway, Line]
+) -> dict[Place, Point]:
+    """Where the landmarks of the places are: in the widest gap between the lines that leave; if
+    they cover something there, in that where they cover least."""
+    size = 2 * RADIUS
+    taken = [(x - RADIUS, y - RADIUS, size, size) for x, y in places.values()]
+    taken += [
+        (min(x, u) - 3, min(y, v) - 3, abs(u - x) + 6, abs(v - y) + 6)
+        for gateway, ((x, y), *_, (u, v)) in lines.items()
+        if gateway not in world.links
+    ]
+    found: dict[Place, Point] = {}
+    for place, (x, y) in places.items():
+        if world.landmarks.get(place):
+            directions = []
+            for slot in world.stars[place]:
+                u, v = _way(lines[place, slot])
+                directions.append(math.atan2(-v, u))
+            boxes: list[Box] = []
+            for gap, middle in gaps(directions):
+                if gap > 0.5 or not boxes:
+                    a, b = math.cos(middle), -math.sin(middle)
+                    _, _, wide, high = _box(world, place, (0, 0))
+                    left = round(x + (RADIUS + GAP) * a + (_sign(a) - 1) * wide / 2)
+                    top = round(y + (RADIUS + GAP) * b + (_sign(b) - 1) * high / 2)
+                    boxes.append((left, top, wide, high))
+            best = min(boxes, key=lambda box: sum(_shared(box, other) for other in taken))
+            taken.append(best)
+            found[place] = best[:2]
+    return found
+
+
+def gaps(directions: Sequence[float]) -> list[tuple[float, float]]:
+    """The gaps between directions, in radians: the width of each, and its middle; those up and
+    to the right, where a text is looked for, before the others of their width."""
+    order = sorted(directions) or [-2.4]
+    pairs = pairwise([*order, order[0] + 2 * math.pi])
+    found = [(round(b - a, 1), (a + b) / 2) for a, b in pairs]
+    return sorted(found, key=lambda gap: (-gap[0], round(-math.cos(gap[1] - 0.9), 3)))
+
+
+def _sign(number: float) -> int:
+    return 0 if abs(number) < 0.3 else 1 if number > 0 else -1
+
+
+def _shared(one: Box, other: Box) -> int:
+    """How much two boxes have in common."""
+    wide, high = (
+        min(one[n] + one[n + 2], other[n] + other[n + 2]) - max(one[n], other[n]) for n in (0, 1)
+    )
+    return max(0, wide) * max(0, high)
+
+
+def _way(line: Line) -> tuple[float, float]:
+    """The direction in which a line leaves."""
+    x, y = line[0]
+    u, v = next((p for p in line if p != (x, y)), (x + 1, y))
+    length = math.dist((x, y), (u, v))
+    return (u - x) / length, (v - y) / length
 
 
 def _scaled(
@@ -122,7 +220,7 @@ def part_of(whole: Drawing, world: TopologicalMap) -> Drawing | None:
     if not all(_narrowest(lines, *star) for star in world.stars.items()):
         return None
     places = {place: point for place, point in whole.places.items() if place in world.stars}
-    return Drawing(places, lines, crossing, whole.frame)
+    return Drawing(places, lines, crossing, whole.frame, signs=whole.signs)
 
 
 def _stub(line: Line) -> Line:
@@ -150,8 +248,11 @@ def body(
     world, steps = scene.world, scene.steps()
     parts = []
     for number, outline, (x, y) in () if small else drawn.faces:
-        parts.append(f'<path class="face f{number % 4}" d="{path(outline)}Z"/>')
-        parts.append(f'<text class="face" x="{x}" y="{y}">{number}</text>')
+        if outline:
+            parts.append(f'<path class="face f{number % 4}" d="{path(outline)}Z"/>')
+            parts.append(f'<text class="face" x="{x}" y="{y}">{number}</text>')
+        else:
+            parts.append(f'<text class="face outer" x="{x}" y="{y}">{number} (outer)</text>')
     crossing = {end for link in drawn.crossing for end in link}
     normal: list[str] = []
     other: list[str] = []
@@ -179,19 +280,26 @@ def body(
         kind += " signed" if world.landmarks.get(place) else ""
         parts.append(f'<circle class="{kind}" cx="{x}" cy="{y}" r="{RADIUS}"/>')
         parts.append(f'<text x="{x}" y="{y}">{escape(label(place))}</text>')
-    for place, signs in world.landmarks.items():
-        if signs:
-            x, y = drawn.places[place]
-            text = ", ".join(_short(sign) for sign in sorted(signs))
-            parts.append(
-                f'<text class="sign" x="{x + RADIUS - 2}" y="{y - RADIUS - 1}">'
-                f"{escape(_short(text))}</text>"
-            )
+    parts += _gateways(drawn, world)
+    for place, (x, y) in drawn.signs.items():
+        if world.landmarks.get(place):
+            _, _, wide, high = _box(world, place, (x, y))
+            text = escape(words.signs(world.landmarks[place]))
+            middle = f'x="{x + wide // 2}" y="{y + high // 2}"'
+            parts.append(f'<text class="sign" {middle}>{text}</text>')
     return "".join(parts)
 
 
-def _short(text: str) -> str:
-    return text if len(text) <= LONGEST else text[: LONGEST - 1] + "…"
+def _gateways(drawn: Drawing, world: TopologicalMap) -> list[str]:
+    """A tick at each gateway, and a dot at gateway 0 of each place."""
+    ticks, dots = [], []
+    for (place, slot), line in drawn.lines.items():
+        x, y = drawn.places[place]
+        u, v = _way(line)
+        at, to = (f"{round(x + far * u, 1):g} {round(y + far * v, 1):g}" for far in (11, 15))
+        ticks.append(f"M{at} {to}")
+        dots += [f"M{at}h0"] * (slot == 0)
+    return _lines("tick", ticks) + _lines("zero", dots)
 
 
 def path(line: Sequence[Point]) -> str:
@@ -245,10 +353,12 @@ def agent(drawn: Drawing, dstate: Gateway) -> str:
     return f'<path class="agent" d="{path(points)}Z"/>'
 
 
-def picture(name: str, frame: Sequence[int], content: str, kind: str = "map") -> str:
+def picture(
+    name: str, frame: Sequence[int], content: str, kind: str = "map", larger: float = 1
+) -> str:
     """A picture, with its name in words."""
     view = " ".join(map(str, frame))
-    size = f'width="{frame[2]}" height="{frame[3]}"'
+    size = f'width="{round(larger * frame[2])}" height="{round(larger * frame[3])}"'
     name = escape(name)
     return (
         f'<svg class="{kind}" role="img" aria-label="{name}" viewBox="{view}" {size}>'

@@ -1,10 +1,11 @@
 """An exploration in words."""
 
 import re
-from collections.abc import Collection
+from collections.abc import Collection, Mapping, Sequence
 
 from topomap.errors import printable
 from topomap.experience import Experience
+from topomap.topology import Gateway, gid
 
 MOST = 24  # gateways of a view that are told one by one
 LONGEST = 16  # letters of the landmarks of a place, in a picture
@@ -59,6 +60,17 @@ def view(experience: Experience, step: int) -> str:
     if len(seen) > MOST:
         words.append(f"{len(seen) - MOST:,} more")
     return f"{number(len(seen), 'way')}: {', '.join(words)}"
+
+
+def refused(arrivals: Mapping[str, Sequence[Gateway]], new: int, most: int = 6) -> str:
+    """The arrivals that are refused at a step, by rule, the first of them if they are many;
+    ``new`` is the place that the step makes."""
+    parts = []
+    for rule, gateways in arrivals.items():
+        names = ["a new place" if place == new else gid((place, slot)) for place, slot in gateways]
+        more = f" and {len(names) - most:,} more" if len(names) > most else ""
+        parts.append(f"{', '.join(names[:most])}{more}: {RULES[rule]}")
+    return "; ".join(parts)
 
 
 def listed(numbers: Collection[int], most: int = 8) -> str:
