@@ -12,7 +12,7 @@ import subprocess
 import time
 from collections import Counter
 from html.parser import HTMLParser
-from itertools import product
+from itertools import combinations, product
 
 import oracle
 import pytest
@@ -22,7 +22,7 @@ from topomap.agreement import Agreement
 from topomap.environment import grid
 from topomap.experience import parse, read
 from topomap.page import FOLDER, Exploration
-from topomap.replay import SHOWN, replay
+from topomap.replay import SHOWN, fate, replay
 from topomap.scenes import Scene
 from topomap.search import breadth_first, root
 from topomap.solver import Query, Watch
@@ -207,6 +207,84 @@ def test_what_is_refused_is_what_the_definitions_refuse(record_property):
     record_property("arrivals refused as by definition", sum(rules.values()) - rules[""])
 
 
+def by_rule(found):
+    """Arrivals by the rule that refuses them."""
+    rules = {}
+    for arrival, rule in sorted(found.items()):
+        if rule:
+            rules.setdefault(rule, []).append(arrival)
+    return rules
+
+
+def test_what_is_refused_of_each_hypothesis():
+    """As the definitions have it, and as the search has it."""
+    draws = random.Random("of each")
+    some = [*WORLDS.values(), *(random_experience(draws, 8) for _ in range(20))]
+    rules = Counter()
+    for seen in some:
+        planar, perpendicular = draws.random() < 0.5, draws.random() < 0.5
+        bound = draws.choice([None, 3])
+        parts = ["planar"] * planar + ["perpendicular"] * perpendicular
+        query = Query(frozenset(parts), bound)
+        node = root(seen, query)
+        for at in [one.dstates for one in breadth_first(node)][:40]:
+            children, ended, refused = fate(seen, query, at)
+            if len(at) > seen.steps:
+                assert (children, ended, refused) == (0, "", {})
+                continue
+            found = refusals(seen, at, planar, perpendicular, bound)
+            assert refused == by_rule(found)
+            node.goto(at)
+            tried = {divmod(arrival, seen.slots): rule for arrival, rule in node.tried()}
+            assert refused == by_rule(tried)
+            assert children == sum(rule is None for rule in found.values())
+            rules.update(list(refused))
+    assert set(rules) == set(words.RULES)
+
+
+def test_the_page_tells_what_is_refused_of_each_hypothesis(three):
+    """Gateways as place.slot; of a place that the step makes there is none on this page."""
+    _, page = three
+    seen = read(ROOT / GRID)
+    best = sorted(answers(("closed", "boundary", "minimal"), seen.facts()))
+    shown = [at for step in replay(seen, Query(), best, Watch(quiet=True))[0] for at in step.shown]
+    captions = [
+        " ".join(e["text"].split())
+        for e in page.all("figure")
+        if e["class"].startswith("hypothesis")
+    ]
+    told = 0
+    assert len(captions) == len(shown) > 40
+    for at, caption in zip(shown, captions, strict=True):
+        found = {}
+        if len(at) <= seen.steps:
+            found = by_rule(refusals(seen, at, False, False, None))
+        if not found:
+            assert "Refused" not in caption
+            continue
+        (parts,) = re.findall(r"Refused there: (.*)\.$", caption)
+        read_back = {}
+        for part in parts.split("; "):
+            gateways, _, why = part.partition(": ")
+            names = re.findall(r"(\d+)\.(\d+)", gateways)
+            read_back[why] = [(int(place), int(slot)) for place, slot in names]
+            more = re.findall(r"and (\d+) more", gateways)
+            read_back[why] += [None] * sum(map(int, more))
+        few = {rule: ends[:6] + [None] * (len(ends) - 6) for rule, ends in found.items()}
+        assert read_back == {words.RULES[rule]: ends for rule, ends in few.items()}
+        told += 1
+    assert told > 10
+
+
+def test_words_of_what_is_refused():
+    many = {"view": [(n, 1) for n in range(9)], "bound": [(12, 0)]}
+    assert words.refused(many, 12) == (
+        "0.1, 1.1, 2.1, 3.1, 4.1, 5.1 and 3 more: another view is seen there; "
+        "a new place: there would be too many places"
+    )
+    assert words.refused({}, 3) == ""
+
+
 def test_shown_are_the_beginnings_of_the_best_and_the_cheapest():
     seen = read(ROOT / GRID)
     best = sorted(answers(("closed", "boundary", "minimal"), seen.facts()))
@@ -272,6 +350,40 @@ def test_drawings_are_of_the_maps(name):
                 order = clockwise(drawn, world, place)
                 start = order.index(min(star))
                 assert order[start:] + order[:start] == sorted(star)
+
+
+def test_pictures_tell_the_gateways():
+    """A tick each, in their order, and a dot at gateway 0; faces with their numbers."""
+    seen = read(ROOT / GRID)
+    at = min(answers(("closed", "boundary", "minimal", "planar"), seen.facts()))
+    scene = Scene(seen.map_of(at), at, "")
+    drawn = svg.drawing(scene.world, None)
+    text = svg.body(scene, drawn, False)
+    number = r"-?[\d.]+"
+    (ticks,), (dots,) = (
+        re.findall(f'class="{kind}" d="([^"]*)"', text) for kind in ("port", "zero")
+    )
+    found = re.findall(f"M({number}) ({number}) ({number}) ({number})", ticks)
+    points = [tuple(map(float, point)) for point in found]
+    zeros = {(float(x), float(y)) for x, y in re.findall(f"M({number}) ({number})h0", dots)}
+    assert len(points) == len(list(scene.world.gateways()))
+    assert len(zeros) == sum(0 in star for star in scene.world.stars.values())
+    for place, star in scene.world.stars.items():
+        x, y = drawn.places[place]
+        own = [p for p in points if abs(math.dist(p[:2], (x, y)) - svg.RADIUS) < 0.2]
+        turns = [math.atan2(v - b, u - a) for a, b, u, v in own]
+        around = [(turn - turns[0]) % (2 * math.pi) for turn in turns]
+        assert len(own) == len(star)
+        assert around == sorted(around)
+        assert (own[0][:2] in zeros) == (0 in star)
+    numbers = re.findall(r'class="face[^"]*" x="[^"]*" y="[^"]*">([^<]*)<', text)
+    outer = [n for n in numbers if "outer" in n]
+    assert len(outer) == 1
+    assert sorted(int(n.split()[0]) for n in numbers) == list(range(1, 6))
+    _, top, _, high = drawn.frame
+    lowest = max(y for _, y in drawn.places.values())
+    (y,) = [y for n, (_, _, (_, y)) in enumerate(drawn.faces) if not drawn.faces[n][1]]
+    assert lowest + svg.RADIUS < y < top + high
 
 
 def test_agreement_of_maps():
@@ -682,7 +794,7 @@ def test_the_accessibility_tree(shown, truth):
     of_step = [text for text in images if text.startswith("After step")]
     assert len(of_step) == min(SHOWN, len(truth[8]))
     assert [text for text in images if text.startswith("Map 1 of 2, optimal: 9 places")]
-    assert f"Hypotheses after each step of {name}, on a logarithmic scale" in images
+    assert "Hypotheses after each step of grid-3x3-snake, on a logarithmic scale" in images
     assert all(images)
     for table in ("Log of", "Hypotheses after each step of", "Arrivals tried and refused at"):
         assert [text for role, text, _ in nodes if role == "table" and text.startswith(table)]
@@ -734,6 +846,35 @@ def test_hostile_landmarks_do_not_run(browser, tmp_path):
     table = browser.find_element("css selector", ".side table").text
     assert "<script>alert(1)</script>" in table
     assert browser.execute_script("return document.scripts.length") == 1
+
+
+def test_no_text_is_cut_off(browser, tmp_path):
+    """Nor are landmarks over each other or on places, and they are short, without quotes."""
+    signs = ['"$x^$_{"', 'f("a$b")', '"日本"', f'"{"W" * 200}"', '"many more letters"', '"b"']
+    facts = [f"slots(4). view(0,0). landmark(0,{signs[0]})."]
+    for step, sign in enumerate(signs[1:], 1):
+        turn, ahead = 2 * (step > 1), f"view({step},2)." * (step < len(signs) - 1)
+        facts.append(f"turn({step},{turn}). view({step},0). {ahead} landmark({step},{sign}).")
+    (tmp_path / "a.lp").write_text("\n".join(facts))
+    assert report(tmp_path / "a.html", tmp_path / "a.lp")[0] == 0
+    size(browser, 1280)
+    browser.get((tmp_path / "a.html").as_uri())
+    texts, cut, wide, frame = browser.execute_script(
+        """const svg = document.querySelector("svg.large"), frame = svg.viewBox.baseVal;
+        const texts = [...svg.querySelectorAll("text")].map((t) => [t, t.getBBox()]);
+        const cut = texts.filter(([t, b]) => b.x < frame.x || b.y < frame.y ||
+          b.x + b.width > frame.x + frame.width || b.y + b.height > frame.y + frame.height);
+        const box = ([t, b]) => [t.textContent, b.x, b.y, b.x + b.width, b.y + b.height];
+        const edges = [frame.x, frame.y, frame.x + frame.width, frame.y + frame.height];
+        return [texts.filter(([t]) => t.matches(".sign")).map(box), cut.map(box),
+                svg.getBoundingClientRect().width / frame.width, edges];"""
+    )
+    assert [name for name, *_ in texts] == [words.signs([sign]) for sign in signs]
+    assert not cut, (cut, frame)
+    assert 1 < wide <= 1.71
+    for (_, *one), (_, *other) in combinations(texts, 2):
+        apart = one[2] <= other[0] or other[2] <= one[0] or one[3] <= other[1] or other[3] <= one[1]
+        assert apart, (one, other)
 
 
 def test_several_explorations_on_one_page(browser, tmp_path):

@@ -110,8 +110,8 @@ def _advance(letter: str) -> float:
 
 
 def extent(text: str, points: float) -> float:
-    """The width of a text in inches."""
-    return sum(map(_advance, text)) * points / 72
+    """The width of a text in inches, at most: letters are fitted to dots, and may get wider."""
+    return 1.05 * sum(map(_advance, text)) * points / 72
 
 
 def _wrapped(text: str, inches: float) -> list[str]:

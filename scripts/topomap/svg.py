@@ -22,10 +22,10 @@ if TYPE_CHECKING:
 UNIT = 60  # the middle one of the links
 RADIUS = 11  # of a place
 APART, NARROW = 30, 15  # places, and in degrees gateways, if they are to be told
-FEW, MANY = (80, 400), (300,)  # steps of the descent, in a small picture and a large one
+FEW, MANY = (80, 400), (300, 1500)  # steps of the descent, in a small picture and a large one
 STUB = 22
 MARGIN = 20
-LETTER, HIGH, GAP = 6.6, 13, 4  # of a landmark: a letter, a line, and what is left round it
+LETTER, HIGH, GAP = 7.2, 13, 4  # of a landmark: a letter, a line, and what is left round it
 
 Point = tuple[int, int]
 Line = list[Point]
@@ -89,7 +89,8 @@ def _frame(points: Sequence[Point], texts: Sequence[tuple[int, int, int, int]]) 
     """What is round points, with a margin, and texts."""
     sides = (-1, 1)
     corners = [(x + a * MARGIN, y + b * MARGIN) for x, y in points for a in sides for b in sides]
-    corners += [corner for x, y, wide, high in texts for corner in ((x, y), (x + wide, y + high))]
+    for x, y, wide, high in texts:
+        corners += [(x - GAP, y - GAP), (x + wide + GAP, y + high + GAP)]
     xs, ys = zip(*corners, strict=True)
     return min(xs), min(ys), max(xs) - min(xs), max(ys) - min(ys)
 
@@ -299,7 +300,7 @@ def _gateways(drawn: Drawing, world: TopologicalMap) -> list[str]:
         at, to = (f"{round(x + far * u, 1):g} {round(y + far * v, 1):g}" for far in (11, 15))
         ticks.append(f"M{at} {to}")
         dots += [f"M{at}h0"] * (slot == 0)
-    return _lines("tick", ticks) + _lines("zero", dots)
+    return _lines("port", ticks) + _lines("zero", dots)
 
 
 def path(line: Sequence[Point]) -> str:
