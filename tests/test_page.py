@@ -262,7 +262,7 @@ def test_the_page_tells_what_is_refused_of_each_hypothesis(three):
         if not found:
             assert "Refused" not in caption
             continue
-        (parts,) = re.findall(r"Refused there: (.*)\.$", caption)
+        (parts,) = re.findall(r"Refused at the next step: (.*)\.$", caption)
         read_back = {}
         for part in parts.split("; "):
             gateways, _, why = part.partition(": ")
