@@ -10,8 +10,8 @@ rotation stays right.
 """
 
 import random
-from collections import deque
-from collections.abc import Callable, Mapping
+from collections import defaultdict, deque
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -28,6 +28,7 @@ Numbers = NDArray[np.int64]
 ORDERS = 30  # of links, for a planar part
 STUB = 0.36  # the length of a stub, where a link is of length 1
 BENDS = 3  # inner points of a link that is not straight
+PIECE = 0.5  # the length of a link's piece up to a crossing
 SHORTEST = 0.4  # link in a drawing by the compass
 MEMORY = 20  # steps that the descent remembers
 WEIGHTS = 100.0, 10.0, 1.0, 0.1, 0.01, 0.002  # of the triangles, one after the other
@@ -59,12 +60,12 @@ def layout(world: TopologicalMap, ahead: Gateway | None = None, steps: int = STE
     """A drawing of a connected map. ``ahead`` is a gateway that is left to the right of the
     picture (else the first one); fewer ``steps`` do for a small picture."""
     part = planar_part(world)
-    crossing = [(out, end) for out, end in world.edges() if out not in part.links]
+    crossing = left(world, part)
     faces, outer = faces_of(part)
     north, fits = compass(part)
-    lines = _straight(part, north) if fits else None
+    lines = _straight(part, north) if fits and not crossing else None
     if lines is None:
-        lines = _bent(part, faces, outer, crossing, steps)
+        lines = _bent(*routed(part, crossing), steps)
     first = ahead or next(world.gateways(), None)
     if first is None:
         return Layout({place: np.zeros(2) for place in world.stars}, {}, faces, outer, [])
@@ -78,12 +79,16 @@ def layout(world: TopologicalMap, ahead: Gateway | None = None, steps: int = STE
 def planar_part(world: TopologicalMap) -> TopologicalMap:
     """The map with links enough to be connected, and all further ones that leave it planar.
     Which these are depends on the order of the links; the best of some orders counts."""
-    best = world
-    if world.genus():
-        draws = (random.Random(seed) for seed in range(ORDERS))
-        parts = (_planar(world, draw.sample(world.edges(), len(world.edges()))) for draw in draws)
-        best = max(parts, key=lambda part: len(part.links))
-    return best
+    if not world.genus():
+        return world
+    draws = (random.Random(seed) for seed in range(ORDERS))
+    parts = (_planar(world, draw.sample(world.edges(), len(world.edges()))) for draw in draws)
+    return min(parts, key=lambda part: (len(routed(part, left(world, part))[1]), -len(part.links)))
+
+
+def left(world: TopologicalMap, part: TopologicalMap) -> list[tuple[Gateway, Gateway]]:
+    """The links of a map that a part of it lacks."""
+    return [(out, end) for out, end in world.edges() if out not in part.links]
 
 
 def _planar(world: TopologicalMap, edges: list[tuple[Gateway, Gateway]]) -> TopologicalMap:
@@ -102,6 +107,53 @@ def _planar(world: TopologicalMap, edges: list[tuple[Gateway, Gateway]]) -> Topo
         if (out, end) in tree or more.genus() == 0:
             part = more
     return part
+
+
+def routed(
+    part: TopologicalMap, crossing: Sequence[tuple[Gateway, Gateway]]
+) -> tuple[TopologicalMap, list[Place]]:
+    """A map of genus 0 that has the further links as well, and of it the places that are not
+    the map's: each is where a further link crosses a link, and straight through it go both.
+    A link is led through as few faces as can be, one after the other."""
+    stars, links = dict(part.stars), dict(part.links)
+    half = part.slots // 2
+    right, left = max(1, half // 2), half + max(1, half // 2)
+    corners: list[Place] = []
+    for out, end in crossing:
+        at = out
+        for gateway in _crossed(TopologicalMap(part.slots, stars, links), out, end):
+            back = links[gateway]
+            corners.append(corner := f"x{len(corners)}")
+            stars[corner] = frozenset([0, right, half, left])
+            for a, b in (gateway, (corner, half)), ((corner, 0), back), (at, (corner, right)):
+                links[a], links[b] = b, a
+            at = corner, left
+        links[at], links[end] = end, at
+    return TopologicalMap(part.slots, stars, links, part.landmarks), corners
+
+
+def _crossed(world: TopologicalMap, out: Gateway, end: Gateway) -> list[Gateway]:
+    """The links that a line between two pending gateways crosses, from their right to their
+    left: as few as can be."""
+    face = {gateway: n for n, walk in enumerate(world.faces()) for gateway in walk}
+    beside: dict[int, list[Gateway]] = defaultdict(list)
+    for gateway, number in face.items():
+        beside[number].append(gateway)
+
+    def lies(gateway: Gateway) -> int:
+        place, slot = gateway
+        while (place, slot) not in world.links:
+            slot = (slot - 1) % world.slots
+        return face[place, slot]
+
+    lines: dict[int, list[Gateway]] = {lies(out): []}
+    for number in (waiting := list(lines)):
+        for gateway in beside[number]:
+            over = face[world.links[gateway]]
+            if over not in lines:
+                lines[over] = [*lines[number], gateway]
+                waiting.append(over)
+    return lines[lies(end)]
 
 
 def compass(world: TopologicalMap) -> tuple[dict[Place, int], bool]:
@@ -207,8 +259,9 @@ class _Mesh:
     triangles between them, counter-clockwise. ``rim`` are the points of the outline, fixed on a
     circle."""
 
-    def __init__(self, world: TopologicalMap, faces: list[list[Gateway]], outer: int) -> None:
-        self.world = world
+    def __init__(self, world: TopologicalMap, corners: list[Place]) -> None:
+        self.world, self.corners = world, corners
+        faces, outer = faces_of(world)
         self.size = 0
         self.place = {place: self._point() for place in world.stars}
         self.lines: dict[Gateway, list[int]] = {}
@@ -218,7 +271,8 @@ class _Mesh:
             if end is None:
                 self.lines[gateway] = [start, self._point()]
             elif gateway not in self.lines:
-                line = [start, *(self._point() for _ in range(BENDS)), self.place[end[0]]]
+                inner = 1 if {gateway[0], end[0]} & set(corners) else BENDS
+                line = [start, *(self._point() for _ in range(inner)), self.place[end[0]]]
                 self.lines[gateway], self.lines[end] = line, line[::-1]
         triangles = []
         for number, face in enumerate(faces):
@@ -308,30 +362,34 @@ class _Shape:
     drawn to an even compass, which may turn; places keep apart. Each triangle resists
     the more, the flatter it is, by ``weight``."""
 
-    LENGTH, BEND, COMPASS, APART, CROSSING = 1.0, 8.0, 1.5, 4.0, 0.05
-    NEAR = 0.9
+    LENGTH, BEND, COMPASS, APART = 1.0, 8.0, 1.5, 4.0
+    NEAR = 0.9, 0.5  # places, and a corner to either
 
-    def __init__(self, mesh: _Mesh, crossing: list[tuple[Gateway, Gateway]]) -> None:
+    def __init__(self, mesh: _Mesh) -> None:
         world = mesh.world
         self.triangles = mesh.triangles.T
-        self.size, self.places = mesh.size, len(world.stars)
+        self.size, self.places = mesh.size, len(world.stars) - len(mesh.corners)
         self.slots = world.slots
-        sides: list[tuple[int, int, float]] = []
         bends: list[tuple[int, int, int]] = []
-        for gateway, line in mesh.lines.items():
-            if gateway not in world.links:
-                sides.append((line[0], line[1], STUB))
-            elif gateway < world.links[gateway]:
-                sides += [(a, b, 1 / (BENDS + 1)) for a, b in pairwise(line)]
-                bends += list(zip(line, line[1:], line[2:], strict=False))
+        sides: list[tuple[int, int, float]]
+        sides = [(*mesh.lines[gateway], STUB) for gateway in world.pending()]
+        for gateway, _ in world.edges():
+            line = mesh.lines[gateway]
+            whole = 1.0 if len(line) == BENDS + 2 else PIECE
+            sides += [(a, b, whole / (len(line) - 1)) for a, b in pairwise(line)]
+            bends += list(zip(line, line[1:], line[2:], strict=False))
+        for corner in mesh.corners:
+            for slot in sorted(world.stars[corner])[:2]:
+                a, b = (mesh.lines[end] for end in ((corner, slot), world.opposite((corner, slot))))
+                bends.append((a[1], a[0], b[1]))
         self.sides = np.array([side[:2] for side in sides]).T
         self.lengths = np.array([side[2] for side in sides])
         self.bends = np.array(bends).reshape(-1, 3).T
-        starts = [(mesh.place[p], mesh.lines[p, s][1], s) for p, s in world.gateways()]
+        real = [gateway for gateway in world.gateways() if gateway[0] not in mesh.corners]
+        starts = [(mesh.place[p], mesh.lines[p, s][1], s) for p, s in real]
         self.gateways = np.array(starts).T
-        ends = [[mesh.lines[gateway][-1] for gateway in link] for link in crossing]
-        self.ends = np.array(ends, int).reshape(-1, 2).T
-        self.pairs = np.array(np.triu_indices(self.places, 1))
+        self.pairs = np.array(np.triu_indices(len(world.stars), 1))
+        self.near = np.where((self.pairs < self.places).all(0), *self.NEAR)
 
     def norths(self, points: Points) -> Points:
         """The direction of each place's slot 0 that fits its gateways best, in radians."""
@@ -386,15 +444,10 @@ class _Shape:
         a, b = self.pairs
         side = points[b] - points[a]
         length = np.linalg.norm(side, axis=1)
-        lack = np.maximum(0, self.NEAR - length)
+        lack = np.maximum(0, self.near - length)
         total += self.APART * (lack**2).sum()
         pull = (-2 * self.APART * lack / length)[:, None] * side
         moved += [(b, pull), (a, -pull)]
-
-        a, b = self.ends
-        side = points[b] - points[a]
-        total += self.CROSSING * (side**2).sum()
-        moved += [(b, 2 * self.CROSSING * side), (a, -2 * self.CROSSING * side)]
 
         number = np.concatenate([number for number, _ in moved])
         force = np.concatenate([force for _, force in moved])
@@ -402,17 +455,11 @@ class _Shape:
         return float(total), np.stack(slopes, 1), np.asarray(turned, float)
 
 
-def _bent(
-    world: TopologicalMap,
-    faces: list[list[Gateway]],
-    outer: int,
-    crossing: list[tuple[Gateway, Gateway]],
-    steps: int,
-) -> dict[Gateway, Points]:
-    """Lines with bends, in a drawing in which no triangle of the mesh is folded; stubs that
-    are the ends of one link not far apart."""
-    mesh = _Mesh(world, faces, outer)
-    shape = _Shape(mesh, crossing)
+def _bent(world: TopologicalMap, corners: list[Place], steps: int) -> dict[Gateway, Points]:
+    """Lines with bends, in a drawing in which no triangle of the mesh is folded; they go on
+    straight through the corners."""
+    mesh = _Mesh(world, corners)
+    shape = _Shape(mesh)
     points = mesh.start()
     free = np.setdiff1d(np.arange(mesh.size), mesh.rim)
 
@@ -431,7 +478,15 @@ def _bent(
     for weight in WEIGHTS:
         x = _descend(energy(weight), x, steps)
     points = drawing(x)
-    return {gateway: points[line] for gateway, line in mesh.lines.items()}
+    lines = {}
+    for start in world.gateways():
+        if start[0] not in corners:
+            gateway, line = start, mesh.lines[start]
+            while (end := world.links.get(gateway)) and end[0] in corners:
+                gateway = world.opposite(end)
+                line = line + mesh.lines[gateway][1:]
+            lines[start] = points[line]
+    return lines
 
 
 def _descend(energy: Callable[[Points], tuple[float, Points]], x: Points, steps: int) -> Points:
