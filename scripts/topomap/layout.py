@@ -1,19 +1,19 @@
 """Where the places, links and pending gateways of a map are drawn.
 
-A map of genus 0 is drawn without crossings; of one of higher genus a planar part is, with the
-other links as stubs at both ends. Around each place the gateways leave in their order, clockwise
-as the agent turns. If all links can be straight and in the directions of one compass, they are.
-Else the drawing is a mesh of triangles: places, bends of links, and in each face a ring of
-corners round a centre. It starts from a drawing on a grid, in which no triangle is folded, and
-is bent towards a good shape by steps that fold none, so nothing comes to cross and every
-rotation stays right.
+A map of genus 0 is drawn without crossings; of one of higher genus a planar part is, and the
+other links are led through its faces, across as few links as can be. Around each place the
+gateways leave in their order, clockwise as the agent turns. If all links can be straight and in
+the directions of one compass, they are. Else the drawing is a mesh of triangles: places,
+crossings, bends of links, and in each face a ring of corners round a centre. It starts from a
+drawing on a grid, in which no triangle is folded, and is bent towards a good shape by steps that
+fold none, so nothing else comes to cross and every rotation stays right.
 """
 
 import random
 from collections import defaultdict, deque
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from itertools import pairwise
+from itertools import combinations, pairwise
 
 import networkx as nx
 import numpy as np
@@ -28,7 +28,7 @@ Numbers = NDArray[np.int64]
 ORDERS = 30  # of links, for a planar part
 STUB = 0.36  # the length of a stub, where a link is of length 1
 BENDS = 3  # inner points of a link that is not straight
-PIECE = 0.5  # the length of a link's piece up to a crossing
+PIECE = 0.7  # the length of a link's piece up to a crossing
 SHORTEST = 0.4  # link in a drawing by the compass
 MEMORY = 20  # steps that the descent remembers
 WEIGHTS = 100.0, 10.0, 1.0, 0.1, 0.01, 0.002  # of the triangles, one after the other
@@ -40,9 +40,9 @@ class Layout:
     """A drawing, y upwards, links about 1 long.
 
     ``places``: a point each. ``lines``: of each gateway the line that leaves by it: to the place
-    at the other end, or to the end of a stub. ``faces``: those of the planar part, each as the
+    at the other end, or to the end of a stub. ``faces``: those of a planar map, each as the
     gateways that its walk leaves by, the face on their right; ``outer``: the number of the outer
-    one. ``crossing``: the links that are not in the planar part.
+    one. ``crossing``: of another map the links that are not in the planar part.
     """
 
     places: dict[Place, Points]
@@ -60,12 +60,29 @@ def layout(world: TopologicalMap, ahead: Gateway | None = None, steps: int = STE
     """A drawing of a connected map. ``ahead`` is a gateway that is left to the right of the
     picture (else the first one); fewer ``steps`` do for a small picture."""
     part = planar_part(world)
-    crossing = left(world, part)
-    faces, outer = faces_of(part)
-    north, fits = compass(part)
-    lines = _straight(part, north) if fits and not crossing else None
+    lines = _by_compass(part) if part is world else None
     if lines is None:
-        lines = _bent(*routed(part, crossing), steps)
+        lines = _bent(*routed(part, lacking(part, world)), steps)
+    return _layout(world, part, lines, ahead)
+
+
+def straight(world: TopologicalMap, ahead: Gateway | None = None) -> Layout | None:
+    """A drawing by the compass, if there is one; of the links that are not in the planar part
+    only the beginning and the end, as stubs."""
+    part = planar_part(world)
+    lines = _by_compass(part)
+    return None if lines is None else _layout(world, part, lines, ahead)
+
+
+def _layout(
+    world: TopologicalMap,
+    part: TopologicalMap,
+    lines: Mapping[Gateway, Points],
+    ahead: Gateway | None,
+) -> Layout:
+    """The drawing, turned so that ``ahead`` leads to the right."""
+    crossing = lacking(part, world)
+    faces, outer = ([], -1) if crossing else faces_of(world)
     first = ahead or next(world.gateways(), None)
     if first is None:
         return Layout({place: np.zeros(2) for place in world.stars}, {}, faces, outer, [])
@@ -78,15 +95,20 @@ def layout(world: TopologicalMap, ahead: Gateway | None = None, steps: int = STE
 
 def planar_part(world: TopologicalMap) -> TopologicalMap:
     """The map with links enough to be connected, and all further ones that leave it planar.
-    Which these are depends on the order of the links; the best of some orders counts."""
+    Which these are depends on the order of the links; of some orders the one by which the
+    rest cross the fewest links counts."""
     if not world.genus():
         return world
     draws = (random.Random(seed) for seed in range(ORDERS))
     parts = (_planar(world, draw.sample(world.edges(), len(world.edges()))) for draw in draws)
-    return min(parts, key=lambda part: (len(routed(part, left(world, part))[1]), -len(part.links)))
+
+    def crossed(part: TopologicalMap) -> tuple[int, int]:
+        return len(routed(part, lacking(part, world))[1]), -len(part.links)
+
+    return min(parts, key=crossed)
 
 
-def left(world: TopologicalMap, part: TopologicalMap) -> list[tuple[Gateway, Gateway]]:
+def lacking(part: TopologicalMap, world: TopologicalMap) -> list[tuple[Gateway, Gateway]]:
     """The links of a map that a part of it lacks."""
     return [(out, end) for out, end in world.edges() if out not in part.links]
 
@@ -110,7 +132,7 @@ def _planar(world: TopologicalMap, edges: list[tuple[Gateway, Gateway]]) -> Topo
 
 
 def routed(
-    part: TopologicalMap, crossing: Sequence[tuple[Gateway, Gateway]]
+    part: TopologicalMap, further: Sequence[tuple[Gateway, Gateway]]
 ) -> tuple[TopologicalMap, list[Place]]:
     """A map of genus 0 that has the further links as well, and of it the places that are not
     the map's: each is where a further link crosses a link, and straight through it go both.
@@ -118,18 +140,18 @@ def routed(
     stars, links = dict(part.stars), dict(part.links)
     half = part.slots // 2
     right, left = max(1, half // 2), half + max(1, half // 2)
-    corners: list[Place] = []
-    for out, end in crossing:
+    crossings: list[Place] = []
+    for out, end in further:
         at = out
         for gateway in _crossed(TopologicalMap(part.slots, stars, links), out, end):
             back = links[gateway]
-            corners.append(corner := f"x{len(corners)}")
-            stars[corner] = frozenset([0, right, half, left])
-            for a, b in (gateway, (corner, half)), ((corner, 0), back), (at, (corner, right)):
+            crossings.append(place := f"x{len(crossings)}")
+            stars[place] = frozenset([0, right, half, left])
+            for a, b in (gateway, (place, half)), ((place, 0), back), (at, (place, right)):
                 links[a], links[b] = b, a
-            at = corner, left
+            at = place, left
         links[at], links[end] = end, at
-    return TopologicalMap(part.slots, stars, links, part.landmarks), corners
+    return TopologicalMap(part.slots, stars, links, part.landmarks), crossings
 
 
 def _crossed(world: TopologicalMap, out: Gateway, end: Gateway) -> list[Gateway]:
@@ -197,9 +219,12 @@ def _direction(angle: float, slots: int) -> Points:
     return np.array([np.cos(turn), np.sin(turn)])
 
 
-def _straight(world: TopologicalMap, north: Mapping[Place, int]) -> dict[Gateway, Points] | None:
+def _by_compass(world: TopologicalMap) -> dict[Gateway, Points] | None:
     """Lines in the directions of the compass, as near as can be to length 1; None if they
     would bend, become short, meet or cross."""
+    north, fits = compass(world)
+    if not fits:
+        return None
     number = {place: index for index, place in enumerate(world.stars)}
     rows, sides = [np.eye(2, 2 * len(number))[n] for n in (0, 1)], [0.0, 0.0]
     for (p, s), (q, _) in world.edges():
@@ -259,8 +284,8 @@ class _Mesh:
     triangles between them, counter-clockwise. ``rim`` are the points of the outline, fixed on a
     circle."""
 
-    def __init__(self, world: TopologicalMap, corners: list[Place]) -> None:
-        self.world, self.corners = world, corners
+    def __init__(self, world: TopologicalMap, crossings: list[Place]) -> None:
+        self.world, self.crossings = world, crossings
         faces, outer = faces_of(world)
         self.size = 0
         self.place = {place: self._point() for place in world.stars}
@@ -271,12 +296,12 @@ class _Mesh:
             if end is None:
                 self.lines[gateway] = [start, self._point()]
             elif gateway not in self.lines:
-                inner = 1 if {gateway[0], end[0]} & set(corners) else BENDS
+                inner = 1 if {gateway[0], end[0]} & set(crossings) else BENDS
                 line = [start, *(self._point() for _ in range(inner)), self.place[end[0]]]
                 self.lines[gateway], self.lines[end] = line, line[::-1]
         triangles = []
-        for number, face in enumerate(faces):
-            walk = self._walk(face)
+        self.walks = [self._walk(face) for face in faces]
+        for number, walk in enumerate(self.walks):
             ring = [self._point() for _ in walk]
             if number == outer:
                 rim = self.rim = [self._point() for _ in walk]
@@ -363,33 +388,38 @@ class _Shape:
     the more, the flatter it is, by ``weight``."""
 
     LENGTH, BEND, COMPASS, APART = 1.0, 8.0, 1.5, 4.0
-    NEAR = 0.9, 0.5  # places, and a corner to either
+    NEAR = 0.9, 0.6, 0.4  # to a place: a place, a crossing, another point of a line
 
     def __init__(self, mesh: _Mesh) -> None:
         world = mesh.world
         self.triangles = mesh.triangles.T
-        self.size, self.places = mesh.size, len(world.stars) - len(mesh.corners)
+        self.size, self.places = mesh.size, len(world.stars) - len(mesh.crossings)
         self.slots = world.slots
-        bends: list[tuple[int, int, int]] = []
-        sides: list[tuple[int, int, float]]
-        sides = [(*mesh.lines[gateway], STUB) for gateway in world.pending()]
+        bends: list[tuple[int, ...]] = []
+        sides: list[tuple[float, ...]]
+        sides = [(*mesh.lines[gateway][:2], STUB) for gateway in world.pending()]
         for gateway, _ in world.edges():
             line = mesh.lines[gateway]
             whole = 1.0 if len(line) == BENDS + 2 else PIECE
             sides += [(a, b, whole / (len(line) - 1)) for a, b in pairwise(line)]
             bends += list(zip(line, line[1:], line[2:], strict=False))
-        for corner in mesh.corners:
-            for slot in sorted(world.stars[corner])[:2]:
-                a, b = (mesh.lines[end] for end in ((corner, slot), world.opposite((corner, slot))))
+        for place in mesh.crossings:
+            for slot in sorted(world.stars[place])[:2]:
+                a, b = (mesh.lines[end] for end in ((place, slot), world.opposite((place, slot))))
                 bends.append((a[1], a[0], b[1]))
-        self.sides = np.array([side[:2] for side in sides]).T
+        self.sides = np.array([side[:2] for side in sides], int).reshape(-1, 2).T
         self.lengths = np.array([side[2] for side in sides])
         self.bends = np.array(bends).reshape(-1, 3).T
-        real = [gateway for gateway in world.gateways() if gateway[0] not in mesh.corners]
+        real = [gateway for gateway in world.gateways() if gateway[0] not in mesh.crossings]
         starts = [(mesh.place[p], mesh.lines[p, s][1], s) for p, s in real]
         self.gateways = np.array(starts).T
-        self.pairs = np.array(np.triu_indices(len(world.stars), 1))
-        self.near = np.where((self.pairs < self.places).all(0), *self.NEAR)
+        own = {(p, q) for line in mesh.lines.values() for p in line for q in line}
+        pairs = {(p, q) for walk in mesh.walks for p in walk for q in walk if p < q}
+        pairs = {pair for pair in pairs if pair[0] < self.places} - own
+        pairs |= set(combinations(range(len(world.stars)), 2))
+        self.pairs = np.array(sorted(pairs)).reshape(-1, 2).T
+        kinds = [self.pairs[1] < self.places, self.pairs[1] < len(world.stars)]
+        self.near = np.select(kinds, self.NEAR[:2], self.NEAR[2])
 
     def norths(self, points: Points) -> Points:
         """The direction of each place's slot 0 that fits its gateways best, in radians."""
@@ -455,10 +485,10 @@ class _Shape:
         return float(total), np.stack(slopes, 1), np.asarray(turned, float)
 
 
-def _bent(world: TopologicalMap, corners: list[Place], steps: int) -> dict[Gateway, Points]:
+def _bent(world: TopologicalMap, crossings: list[Place], steps: int) -> dict[Gateway, Points]:
     """Lines with bends, in a drawing in which no triangle of the mesh is folded; they go on
-    straight through the corners."""
-    mesh = _Mesh(world, corners)
+    straight through the crossings."""
+    mesh = _Mesh(world, crossings)
     shape = _Shape(mesh)
     points = mesh.start()
     free = np.setdiff1d(np.arange(mesh.size), mesh.rim)
@@ -480,9 +510,9 @@ def _bent(world: TopologicalMap, corners: list[Place], steps: int) -> dict[Gatew
     points = drawing(x)
     lines = {}
     for start in world.gateways():
-        if start[0] not in corners:
+        if start[0] not in crossings:
             gateway, line = start, mesh.lines[start]
-            while (end := world.links.get(gateway)) and end[0] in corners:
+            while (end := world.links.get(gateway)) and end[0] in crossings:
                 gateway = world.opposite(end)
                 line = line + mesh.lines[gateway][1:]
             lines[start] = points[line]

@@ -33,7 +33,7 @@ Link = tuple[Gateway, Gateway]
 @dataclass(frozen=True)
 class Drawing:
     """Where a map is drawn: places, of each gateway the line that leaves by it, y downwards; the
-    links that cross others, as stubs; the frame, x, y, width and height; and faces, each its
+    links that cross others; the frame, x, y, width and height; and faces, each its
     outline and a point in it."""
 
     places: Mapping[Place, Point]
@@ -58,13 +58,11 @@ def drawing(world: TopologicalMap, ahead: Gateway | None, small: bool = False) -
     if small and not narrowest:
         return None
     points = [*places.values(), *(p for line in lines.values() for p in line)]
-    for out, end in laid.crossing:
-        points += _between(lines[out], lines[end])
     xs, ys = zip(*points, strict=True)
     corner = min(xs) - MARGIN, min(ys) - MARGIN
     frame = (*corner, max(xs) + MARGIN - corner[0], max(ys) + MARGIN - corner[1])
     faces = []
-    if not small and not laid.crossing:  # else they are not the map's
+    if not small:
         from topomap.draw import inside  # so does matplotlib
 
         for number, face in enumerate(laid.faces, 1):
@@ -85,7 +83,7 @@ def _scaled(
     lines = {}
     for gateway, line in laid.lines.items():
         points = [unit * p for p in line]
-        if gateway not in linked:
+        if gateway not in world.links:
             way = (line[1] - line[0]) / math.dist(line[0], line[1])
             points = [unit * line[0] + far * way for far in (0, STUB)]
         lines[gateway] = [_point(p) for p in points]
@@ -169,7 +167,7 @@ def body(
     parts += [f'<circle class="end" cx="{x}" cy="{y}" r="3"/>' for x, y in ends]
     for out, end in drawn.crossing:
         kind = "crossing apart" if (out, end) in apart or (end, out) in apart else "crossing"
-        parts += _lines(kind, [_curve(drawn.lines[out], drawn.lines[end])])
+        parts += _lines(kind, [path(drawn.lines[out])])
     if not small:
         for gateway, end in world.edges():
             along = sorted(steps.get(gateway, []) + steps.get(end, []))
@@ -201,27 +199,6 @@ def path(line: Sequence[Point]) -> str:
 def _lines(kind: str, paths: Sequence[str]) -> list[str]:
     """One element for all lines of a kind."""
     return [f'<path class="{kind}" d="{"".join(paths)}"/>'] if paths else []
-
-
-def _between(out: Line, end: Line) -> Line:
-    """Corners that draw a curve from the end of a stub to that of another, to leave both as they
-    do."""
-    (a, b), (d, c) = out[-2:], end[-2:]
-    far = math.dist(b, c) / 2.5
-
-    def beyond(p: Point, q: Point) -> Point:
-        length = math.dist(p, q) or 1.0
-        x, y = (round(q[axis] + far * (q[axis] - p[axis]) / length) for axis in (0, 1))
-        return x, y
-
-    return [beyond(a, b), beyond(d, c)]
-
-
-def _curve(out: Line, end: Line) -> str:
-    """From the place of a stub to that of another."""
-    curve = " ".join(f"{x} {y}" for x, y in (*_between(out, end), end[-1]))
-    back = " ".join(f"{x} {y}" for x, y in reversed(end[:-1]))
-    return f"{path(out)}C{curve}L{back}"
 
 
 def _along(line: Line, steps: Sequence[int]) -> str:
