@@ -16,7 +16,7 @@ import numpy as np
 import pydot
 import pytest
 import topomap.layout
-from conftest import ROOT, TRIED
+from conftest import ROOT, TRIED, lacking
 from topomap import exports, maps, solver
 from topomap.errors import InputError
 from topomap.experience import Experience, explore, read
@@ -298,8 +298,9 @@ def read_attributes(element):
     return {key: bare(value) for key, value in element.get_attributes().items()}
 
 
-@pytest.mark.skipif(not shutil.which("neato"), reason="neato, of Graphviz, is not installed")
 def test_neato_draws_it_there(scene):
+    if not shutil.which("neato"):
+        lacking("GRAPHVIZ", "neato, of Graphviz, is not installed")
     plain = subprocess.run(
         ["neato", "-n2", "-Tplain"],
         input=exports.dot(scene),
@@ -314,6 +315,22 @@ def test_neato_draws_it_there(scene):
     for place, point in laid.places.items():
         moved = points[str(place)] - points[str(first)]
         assert np.allclose(moved, point - laid.places[first], atol=0.02)
+    drawn = [line.split() for line in plain.splitlines() if line.startswith("edge ")]
+    wanted = [gateway for gateway, _ in scene.world.edges()] + scene.world.pending()
+    assert len(drawn) == len(wanted)
+    crossing = [out for out, _ in laid.crossing]
+    for gateway in wanted:  # in neato's order they are by their ends
+        end = scene.world.links.get(gateway)
+        ends = ["edge", str(gateway[0]), str(end[0]) if end else gid(gateway)]
+        line = laid.lines[gateway] - laid.places[first] + points[str(first)]
+        style = "dashed" if gateway in crossing else "solid"
+        assert any(
+            edge[:3] == ends
+            and edge[-2] == style
+            and int(edge[3]) == 3 * len(line) - 2
+            and np.allclose(np.array(edge[4:-2], float).reshape(-1, 2)[::3], line, atol=0.02)
+            for edge in drawn
+        )
 
 
 def test_facts_are_what_clingraph_reads(scene):

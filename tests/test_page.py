@@ -16,7 +16,7 @@ from itertools import product
 
 import oracle
 import pytest
-from conftest import BIN, ROOT, answers, run
+from conftest import BIN, ROOT, answers, lacking, run
 from topomap import cli, svg, words
 from topomap.agreement import Agreement
 from topomap.environment import grid
@@ -483,23 +483,16 @@ def test_colours_contrast(scheme):
 # In a browser.
 
 
-def unavailable(why):
-    """Skip, unless there is to be a browser."""
-    if os.environ.get("REQUIRE_BROWSER") == "1":
-        pytest.fail(f"REQUIRE_BROWSER=1, but {why}")
-    pytest.skip(why)
-
-
 @pytest.fixture(scope="module")
 def browser(tmp_path_factory):
     """Chromium, without a window."""
     program, driver = shutil.which("chromium"), shutil.which("chromedriver")
     if not (program and driver):
-        unavailable("no chromium and chromedriver")
+        lacking("BROWSER", "no chromium and chromedriver")
     try:
         from selenium import webdriver
     except ImportError:
-        unavailable("no selenium")
+        lacking("BROWSER", "no selenium")
     options = webdriver.ChromeOptions()
     options.binary_location = program
     for option in (
