@@ -245,8 +245,8 @@ def test_a_file_of_several_instances(topomap, tmp_path):
     maps = tmp_path / "maps.json"
     other = "instances/grid-3x4-paper.lp"
     assert not topomap("solve", GRID, other, "--optimal", "--json", "-o", maps).returncode
-    for instance, number in ((GRID, 2), (other, 8)):
-        done = topomap("check", instance, maps)
+    for file, number in ((GRID, 2), (other, 8)):
+        done = topomap("check", file, maps)
         assert done.stdout == f"{number} maps, none unsound\n"
     assert topomap("check", "instances/grid-4x4-snake.lp", maps).returncode == 2
 

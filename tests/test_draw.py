@@ -20,8 +20,9 @@ from defusedxml import ElementTree
 from topomap import draw, search
 from topomap.environment import grid, lattice
 from topomap.generate import instance
-from topomap.layout import lacking, layout, planar_part, routed
+from topomap.layout import layout
 from topomap.pictures import FORMATS
+from topomap.planarize import lacking, planar_part, routed
 from topomap.scenes import Scene
 from topomap.solver import Query, Watch
 from topomap.topology import TopologicalMap

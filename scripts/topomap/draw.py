@@ -12,7 +12,8 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Circle, Patch, Polygon
 from matplotlib.path import Path as Outline
 
-from topomap.layout import Layout, Points, layout
+from topomap.bent import Points
+from topomap.layout import Layout, layout
 from topomap.scenes import Scene
 from topomap.topology import Gateway, Place, TopologicalMap, gid, label
 

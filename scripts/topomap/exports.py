@@ -21,7 +21,7 @@ from topomap.scenes import Scene, of_document
 from topomap.topology import Gateway, Place, gid
 
 if TYPE_CHECKING:
-    from topomap.layout import Points
+    from topomap.bent import Points
 
 Node = tuple[Place | Gateway, dict[str, str]]
 Edge = tuple[Place | Gateway, Place | Gateway, dict[str, str]]

@@ -16,8 +16,9 @@ from string import ascii_letters
 
 import numpy as np
 
+from topomap.bent import Points
 from topomap.errors import printable
-from topomap.layout import Layout, Points, layout, straight
+from topomap.layout import Layout, layout, straight
 from topomap.scenes import Scene
 from topomap.topology import Gateway, Place, gid, label
 
