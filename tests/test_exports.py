@@ -10,6 +10,7 @@ import resource
 import shutil
 import subprocess
 from collections import Counter
+from dataclasses import replace
 
 import clingo
 import networkx as nx
@@ -391,7 +392,8 @@ FOREIGN = {
         "no route in it",
     ),
     "another route": (spoilt(lambda g: g["graph"]["at"].pop()), "do not fit"),
-    "a leap": (spoilt(lambda g: g["graph"]["at"].pop(3)), "links that are not there"),
+    "a step left out": (spoilt(lambda g: g["graph"]["at"].pop(3)), "steps of at are not 0, 1, 2"),
+    "a leap": (spoilt(lambda g: g["graph"]["at"][3].__setitem__(1, 0)), "links that are not there"),
     "odd slots": (spoilt(lambda g: g["graph"].update(slots=5)), "even number"),
     "slots of text": (spoilt(lambda g: g["graph"].update(slots="4")), "slots: not what"),
     "another genus": (spoilt(lambda g: g["graph"].update(genus=3)), "do not fit"),
@@ -557,3 +559,12 @@ def test_too_little_memory_is_said_at_once(tmp_path, call, megabytes):
     assert (done.returncode, done.stdout) == (3, "")
     assert done.stderr == "topomap: out of memory\n"
     assert not (ROOT / "none.svg").exists()
+
+
+@pytest.mark.parametrize(
+    ("form", "title"), [("dot", r'"a\\nb: the only map'), ("clingraph", r'"a\\\\nb: the only map')]
+)
+def test_a_line_break_in_a_name_breaks_no_title(form, title):
+    scene = replace(optimal("grid-3x3-snake")[1][0], name="a\nb")
+    assert exports.FORMATS[form](scene).count(title) == 1
+    assert scene.title.count("\n") == 1

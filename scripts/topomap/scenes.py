@@ -9,7 +9,7 @@ from typing import Any
 import networkx as nx
 
 from topomap import maps, solver
-from topomap.errors import InputError
+from topomap.errors import InputError, printable
 from topomap.experience import LARGEST, MOST_SLOTS, Experience, parse
 from topomap.files import text
 from topomap.solver import MEMORY, Found, Query, Stopped, Watch
@@ -49,7 +49,9 @@ class Scene:
             _number(len(world.paths()), "path"),
             "planar" if genus == 0 else f"genus {genus}",
         ]
-        title = self.caption or f"{self.name}: {which}{f', {self.kind}' * bool(self.kind)}"
+        title = (
+            self.caption or f"{printable(self.name)}: {which}{f', {self.kind}' * bool(self.kind)}"
+        )
         return f"{title}\n{', '.join(sizes)}"
 
     def steps(self) -> dict[Gateway, list[int]]:
