@@ -467,7 +467,7 @@ def test_names_do_not_speak_to_the_terminal(topomap, tmp_path):
     done = topomap("show", file)
     assert done.returncode == 0
     assert all(c.isprintable() or c == "\n" for c in done.stdout)
-    assert done.stdout.startswith("x\\x1b]0;bad\\x07\\n: the only map\n1 place, ")
+    assert done.stdout.startswith("x\\x1b]0;bad\\x07\\n: map 1 of 1 found\n1 place, ")
 
 
 @pytest.mark.parametrize(
