@@ -467,7 +467,7 @@ def test_names_do_not_speak_to_the_terminal(topomap, tmp_path):
     done = topomap("show", file)
     assert done.returncode == 0
     assert all(c.isprintable() or c == "\n" for c in done.stdout)
-    assert done.stdout.startswith("x\\x1b]0;bad\\x07\\n: the only map\n1 place, ")
+    assert done.stdout.startswith("x\\x1b]0;bad\\x07\\n: map 1 of 1 found\n1 place, ")
 
 
 @pytest.mark.parametrize(
@@ -492,3 +492,18 @@ def test_maps_that_cannot_be_shown(topomap, tmp_path, change, fault):
 def test_no_map_in_time_is_said_once(topomap):
     done = topomap("show", "instances/manhattan-tour88-signs30.lp", "--timeout", "0.01")
     assert (done.returncode, done.stdout, done.stderr.count("\n")) == (3, "", 1)
+
+
+def test_places_that_are_drawn_close_together_make_no_endless_picture(monkeypatch):
+    """Once such a map had lines of a hundred thousand characters."""
+
+    def close(made, ahead):
+        laid = layout(made, ahead)
+        laid.places.update(dict.fromkeys(list(laid.places)[:2], next(iter(laid.places.values()))))
+        return laid
+
+    scene = walk(lattice("triangles", 2, 2).map, 12, random.Random(1))
+    monkeypatch.setattr("topomap.terminal.layout", close)
+    rows, _ = printed(scene, 80)
+    assert is_dots(rows)
+    assert 80 < max(map(len, rows)) < 5 * 80

@@ -131,7 +131,8 @@ def _read(file: str, graph: "nx.Graph[Any]") -> str:
     if not same:
         raise InputError(f"{file}: gateways, landmarks, steps or genus do not fit the links and at")
     claims["horizon"] = len(scene.at) - 1
-    tail = {"kind": kind, "count": 1, "complete": True, "fault": None}
+    # There may be more maps of that kind than this one.
+    tail = {"kind": kind, "count": 1, "complete": False, "fault": "a single map, imported"}
     return json.dumps({**claims, "maps": [map_json(scene.world, scene.at)], **tail}) + "\n"
 
 

@@ -37,7 +37,7 @@ ASCII = str.maketrans(
 SAME = 0.03  # coordinates that differ less are one row or column; layouts keep lines 0.05 apart
 ACROSS, DOWN, FACING = 5, 3, 5  # free cells between columns, and rows; where two stubs face
 FINEST = 28.0  # dots that a link of length 1 takes
-LARGER = 1.2, 40  # where numbers fall onto each other: how much, and how often at most
+LARGER = 1.2, 8  # where numbers fall onto each other: how much, and how often at most
 
 
 class Taken(Exception):
@@ -78,7 +78,7 @@ def _in_colour(text: str, colour: str) -> str:
 
 def text(scene: Scene, width: int, coloured: bool = False) -> str:
     """A map in a terminal of that many columns. Maps of lines are as wide as they need; maps of
-    dots fit, unless numbers would fall onto each other."""
+    dots fit, unless numbers would fall onto each other: then they are up to four times as wide."""
     world = scene.world
     ahead = world.links[scene.at[1]] if len(scene.at) > 1 else None
     laid = straight(world, ahead)
