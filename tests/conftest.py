@@ -1,6 +1,7 @@
 """What the tests share: stock clingo on encodings and facts, without any of our driver."""
 
 import json
+import os
 import shutil
 import signal
 import subprocess
@@ -137,6 +138,13 @@ def run(*command, **options):
     return subprocess.run(
         [program, *map(str, command[1:])], capture_output=True, text=True, cwd=ROOT, **options
     )
+
+
+def lacking(tool, why):
+    """Skip, unless there is to be such a tool."""
+    if os.environ.get(f"REQUIRE_{tool}") == "1":
+        pytest.fail(f"REQUIRE_{tool}=1, but {why}")
+    pytest.skip(why)
 
 
 @pytest.fixture

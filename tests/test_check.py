@@ -8,6 +8,9 @@ import pytest
 from conftest import ENCODINGS, TRIED, run
 from flawed import DEMANDS, MAPS, mapped, of_texts, placed, with_errors
 from topomap.check import STEP_RULES, by_definition, by_rules
+from topomap.environment import grid
+from topomap.generate import instance
+from topomap.report import map_json
 
 GRID = "instances/grid-3x3-snake.lp"
 
@@ -242,7 +245,26 @@ def test_a_file_of_several_instances(topomap, tmp_path):
     maps = tmp_path / "maps.json"
     other = "instances/grid-3x4-paper.lp"
     assert not topomap("solve", GRID, other, "--optimal", "--json", "-o", maps).returncode
-    for instance, number in ((GRID, 2), (other, 8)):
-        done = topomap("check", instance, maps)
+    for file, number in ((GRID, 2), (other, 8)):
+        done = topomap("check", file, maps)
         assert done.stdout == f"{number} maps, none unsound\n"
     assert topomap("check", "instances/grid-4x4-snake.lp", maps).returncode == 2
+
+
+def test_a_circular_path_may_begin_anywhere(topomap, tmp_path):
+    """Either way round; but its order counts."""
+    made = instance(grid(1, 5, "cylinder"), "walk", steps=12)
+    file, seen = tmp_path / "maps.json", tmp_path / "ring.lp"
+    seen.write_text(made.experience.facts())
+    found = map_json(made.experience.map_of(made.truth), made.truth)
+    (ring,) = [path for path in found["paths"] if len(path) > 1]
+    back = [[place, (slot + 2) % 4] for place, slot in reversed(ring)]
+    ways = [way[n:] + way[:n] for way in (ring, back) for n in range(len(ring))]
+    wrong = [[*ring[:2], *reversed(ring[2:])], ring[:-1], [], [[place, 9] for place, _ in ring]]
+    for way in ways + wrong:
+        others = [path for path in found["paths"] if path != ring]
+        file.write_text(json.dumps({"maps": [{**found, "paths": [way, *others]}]}))
+        done = topomap("check", seen, file)
+        assert done.returncode == 1
+        assert "path_circular" in done.stdout
+        assert ("paths: not what at says" in done.stdout) == (way in wrong)

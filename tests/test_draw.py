@@ -9,9 +9,11 @@ import subprocess
 import sys
 import time
 import warnings
+from collections import defaultdict
 from io import BytesIO
 from itertools import combinations, pairwise
 
+import networkx as nx
 import numpy as np
 import pytest
 from conftest import ROOT, run
@@ -20,8 +22,9 @@ from topomap import draw, search, words
 from topomap.environment import grid, lattice
 from topomap.experience import read
 from topomap.generate import instance
-from topomap.layout import layout, planar_part
+from topomap.layout import layout
 from topomap.pictures import FORMATS
+from topomap.planarize import lacking, planar_part, routed
 from topomap.scenes import Scene
 from topomap.solver import Query, Watch
 from topomap.topology import TopologicalMap, label
@@ -61,7 +64,7 @@ def lines_of(scene):
     lines = {}
     for name, group in drawn.items():
         kind, _, rest = name.partition("-")
-        if kind in ("link", "pending"):
+        if kind in ("link", "crossing", "pending"):
             path = next(iter(group)).get("d")
             points = np.array(re.findall(f"({NUMBER}) ({NUMBER})", path), float) * [1, -1]
             ends = [tuple(map(int, gateway.split("."))) for gateway in rest.split("-to-")]
@@ -115,42 +118,54 @@ def cross(a, b, c, d):
     return side(a, b, c) != side(a, b, d) and side(c, d, a) != side(c, d, b)
 
 
-def no_two_cross(world, lines):
-    """Lines meet at most in places that they share."""
-    once = [
-        g
-        for g in lines
-        if g not in world.links or g < world.links[g] or world.links[g] not in lines
-    ]
+def crossings(world, lines):
+    """The points at which lines cross, each with the two that do. Lines meet nowhere else but in
+    places that they share."""
+    once = [g for g in lines if g not in world.links or g < world.links[g]]
+    through = defaultdict(list)
+    for g in once:
+        for before, here, after in zip(lines[g], lines[g][1:], lines[g][2:], strict=False):
+            through[tuple(here)].append((g, before - here, after - here))
+    points = {point: met for point, met in through.items() if len(met) > 1}
+    for (g, *one), (h, *other) in points.values():
+        assert g != h
+        turns = [np.arctan2(*way) - np.arctan2(*one[0]) for way in (one[1], *other)]
+        across, *sides = (turn % (2 * np.pi) for turn in turns)
+        assert min(sides) < across < max(sides)  # they do not only touch
     segments = [(g, n, pair) for g in once for n, pair in enumerate(pairwise(lines[g]))]
     for (g, n, (a, b)), (h, m, (c, d)) in combinations(segments, 2):
         near = (g == h and abs(n - m) < 2) or {tuple(a), tuple(b)} & {tuple(c), tuple(d)}
         assert near or not cross(a, b, c, d), (g, h)
+    return {point: {g for g, *_ in met} for point, met in points.items()}
 
 
 def check(scene):
     """What holds of every picture."""
     world = scene.world
     lines, drawn = lines_of(scene)
-    crossing = [name for name in drawn if name.startswith("crossing-")]
     part = planar_part(world)
+    further = lacking(part, world)
     assert set(lines) == set(world.gateways())
-    assert len(crossing) == (len(world.links) - len(part.links)) // 2
-    assert bool(crossing) == (world.genus() > 0)
+    assert len([name for name in drawn if name.startswith("crossing-")]) == len(further)
+    assert bool(further) == (world.genus() > 0)
     assert f"genus {world.genus()}" in scene.title or world.genus() == 0
     for place, star in world.stars.items():
         assert f"place-{place}" in drawn
         assert clockwise(lines, place) == sorted(star)
-    for gateway, end in part.links.items():
+    for gateway, end in world.links.items():
         assert np.allclose(lines[gateway], lines[end][::-1])
         assert np.allclose(lines[gateway][-1], lines[end][0])
-    no_two_cross(part, lines)
+    crossed = crossings(world, lines)
+    assert len(crossed) == len(routed(part, further)[1])
+    for out, end in further:
+        assert any({out, end} & pair for pair in crossed.values())
+    assert all(any({*link} & pair for link in further) for pair in crossed.values())
     ticks_and_dots(world, lines, drawn)
     faces, numbers = (
         {int(name.split("-")[1]) for name in drawn if name.startswith(kind)}
         for kind in ("face-", "number-")
     )
-    count = 0 if crossing else len(world.faces())
+    count = 0 if further else len(world.faces())
     assert numbers == set(range(1, count + 1))
     assert len(faces) == max(0, count - 1)
     assert faces <= numbers
@@ -171,6 +186,34 @@ def test_of_other_maps_the_links_that_cross_are_drawn_so(number):
 
 def test_some_of_these_maps_are_of_higher_genus():
     assert {some_map(number).world.genus() for number in range(10)} >= {0, 1}
+
+
+@pytest.mark.parametrize("number", range(10))
+def test_a_link_crosses_as_few_as_can_be(number):
+    """Without what is in between the routed map is the map; and the first further link goes by
+    a shortest way from face to face."""
+    world = some_map(number).world
+    part = planar_part(world)
+    further = lacking(part, world)
+    whole, between = routed(part, further)
+    assert whole.genus() == 0
+    links = {}
+    for gateway in part.gateways():
+        end = whole.links.get(gateway)
+        while end and end[0] in between:
+            end = whole.links[whole.opposite(end)]
+        links |= {gateway: end} if end else {}
+    assert links == world.links
+    for out, end in further[:1]:
+        face = {gateway: n for n, walk in enumerate(part.faces()) for gateway in walk}
+        over = nx.Graph((face[a], face[b]) for a, b in part.links.items())
+
+        def beside(place, slot, part=part, face=face):
+            back = [(slot - n) % part.slots for n in range(part.slots)]
+            return next(face[place, s] for s in back if (place, s) in face)
+
+        least = nx.shortest_path_length(over, beside(*out), beside(*end))
+        assert len(routed(part, [(out, end)])[1]) == least > 0
 
 
 @pytest.mark.parametrize("name", WORLDS)

@@ -6,9 +6,11 @@ import itertools
 import json
 import os
 import random
+import resource
 import shutil
 import subprocess
 from collections import Counter
+from dataclasses import replace
 
 import clingo
 import networkx as nx
@@ -16,7 +18,7 @@ import numpy as np
 import pydot
 import pytest
 import topomap.layout
-from conftest import ROOT, TRIED
+from conftest import ROOT, TRIED, lacking, run
 from topomap import exports, maps, solver
 from topomap.errors import InputError
 from topomap.experience import Experience, explore, read
@@ -260,12 +262,11 @@ def is_the_drawing(nodes, edges, scene, name, stub):
     gateways = {(name(place), str(slot)): (place, slot) for place, slot in world.gateways()}
     for a, _, told in edges:
         gateway = gateways[a, told["taillabel"]]
-        assert ("pos" in told) is (gateway not in crossing)
-        if "pos" in told:
-            spline = numbers(told["pos"])
-            assert np.allclose(spline[::3], 72 * laid.lines[gateway], atol=0.02)
-            thirds = (2 * spline[:-1:3] + spline[3::3]) / 3
-            assert np.allclose(spline[1::3], thirds, atol=0.02)
+        assert (told.get("style") == "dashed") is (gateway in crossing)
+        spline = numbers(told["pos"])
+        assert np.allclose(spline[::3], 72 * laid.lines[gateway], atol=0.02)
+        thirds = (2 * spline[:-1:3] + spline[3::3]) / 3
+        assert np.allclose(spline[1::3], thirds, atol=0.02)
     steps = [
         step
         for _, _, told in edges
@@ -299,8 +300,9 @@ def read_attributes(element):
     return {key: bare(value) for key, value in element.get_attributes().items()}
 
 
-@pytest.mark.skipif(not shutil.which("neato"), reason="neato, of Graphviz, is not installed")
 def test_neato_draws_it_there(scene):
+    if not shutil.which("neato"):
+        lacking("GRAPHVIZ", "neato, of Graphviz, is not installed")
     plain = subprocess.run(
         ["neato", "-n2", "-Tplain"],
         input=exports.dot(scene),
@@ -315,6 +317,22 @@ def test_neato_draws_it_there(scene):
     for place, point in laid.places.items():
         moved = points[str(place)] - points[str(first)]
         assert np.allclose(moved, point - laid.places[first], atol=0.02)
+    drawn = [line.split() for line in plain.splitlines() if line.startswith("edge ")]
+    wanted = [gateway for gateway, _ in scene.world.edges()] + scene.world.pending()
+    assert len(drawn) == len(wanted)
+    crossing = [out for out, _ in laid.crossing]
+    for gateway in wanted:  # in neato's order they are by their ends
+        end = scene.world.links.get(gateway)
+        ends = ["edge", str(gateway[0]), str(end[0]) if end else gid(gateway)]
+        line = laid.lines[gateway] - laid.places[first] + points[str(first)]
+        style = "dashed" if gateway in crossing else "solid"
+        assert any(
+            edge[:3] == ends
+            and edge[-2] == style
+            and int(edge[3]) == 3 * len(line) - 2
+            and np.allclose(np.array(edge[4:-2], float).reshape(-1, 2)[::3], line, atol=0.02)
+            for edge in drawn
+        )
 
 
 def test_facts_are_what_clingraph_reads(scene):
@@ -374,7 +392,8 @@ FOREIGN = {
         "no route in it",
     ),
     "another route": (spoilt(lambda g: g["graph"]["at"].pop()), "do not fit"),
-    "a leap": (spoilt(lambda g: g["graph"]["at"].pop(3)), "links that are not there"),
+    "a step left out": (spoilt(lambda g: g["graph"]["at"].pop(3)), "steps of at are not 0, 1, 2"),
+    "a leap": (spoilt(lambda g: g["graph"]["at"][3].__setitem__(1, 0)), "links that are not there"),
     "odd slots": (spoilt(lambda g: g["graph"].update(slots=5)), "even number"),
     "slots of text": (spoilt(lambda g: g["graph"].update(slots="4")), "slots: not what"),
     "another genus": (spoilt(lambda g: g["graph"].update(genus=3)), "do not fit"),
@@ -459,3 +478,93 @@ def test_the_same_bytes(topomap, form):
         for seed in "12"
     ]
     assert runs[0] == runs[1] != ""
+
+
+def asked_of_maps(tmp_path, content, *arguments):
+    """What ``show`` says of a text of maps."""
+    file = tmp_path / "maps.json"
+    file.write_text(json.dumps(content))
+    return run("topomap", "show", file, *arguments)
+
+
+def document(change=lambda document, entry: None):
+    """A grid's best map as solve --json writes it, changed."""
+    (scene, *_) = optimal("grid-3x3-snake")[1]
+    entry = json.loads(json.dumps(map_json(scene.world, scene.at)))
+    made = {"slots": 4, "maps": [entry], "kind": "optimal", "optimal": True, "complete": True}
+    change(made, entry)
+    return made
+
+
+@pytest.mark.parametrize("part", [["--planar"], ["--bound", "3"], ["--horizon", "2"]])
+def test_parts_of_maps_that_are_there_already_are_refused(tmp_path, part):
+    done = asked_of_maps(tmp_path, document(), *part)
+    assert (done.returncode, done.stdout, done.stderr.count("\n")) == (2, "", 1)
+    assert "maps, and no instance" in done.stderr
+    assert asked_of_maps(tmp_path, document(), "--timeout", "9").returncode == 0
+
+
+@pytest.mark.parametrize(
+    ("change", "title"),
+    [
+        (lambda made, _: None, "the only map, optimal"),
+        (lambda made, _: made.update(complete=False), "map 1 of 1 found, optimal"),
+        (lambda made, _: made.pop("complete"), "map 1 of 1 found, optimal"),
+        (
+            lambda made, _: made.update(kind="closed, best-first", optimal=False),
+            "map 1 of 1 found, closed, best-first",
+        ),
+        (lambda made, entry: made["maps"].append(entry), "map 1 of 2, optimal"),
+    ],
+)
+def test_a_title_says_the_only_map_where_there_is_no_other(tmp_path, change, title):
+    done = asked_of_maps(tmp_path, document(change))
+    assert done.stdout.split("\n")[0] == f"{tmp_path / 'maps.json'}: {title}"
+
+
+def test_an_imported_map_is_not_said_to_be_the_only_one(tmp_path):
+    (scene, *_) = optimal("grid-3x3-snake")[1]
+    imported = returned(tmp_path, scene, "json")
+    assert (imported["complete"], imported["fault"]) == (False, "a single map, imported")
+    assert "map 1 of 1 found, optimal" in asked_of_maps(tmp_path, imported).stdout
+
+
+@pytest.mark.parametrize(
+    ("change", "fault"),
+    [
+        (lambda _, entry: entry["places"].append(entry["places"][0]), "places or links are not"),
+        (lambda _, entry: entry["at"].pop(3), "the steps of at are not"),
+        (lambda _, entry: entry["at"].append(entry["at"][-1]), "the steps of at are not"),
+        (lambda _, entry: entry["at"].append([99, *entry["at"][-1][1:]]), "the steps of at are"),
+    ],
+)
+def test_maps_that_contradict_themselves_are_refused(tmp_path, change, fault):
+    done = asked_of_maps(tmp_path, document(change))
+    assert (done.returncode, done.stdout, done.stderr.count("\n")) == (2, "", 1)
+    assert fault in done.stderr
+
+
+@pytest.mark.parametrize("megabytes", [170, 230, 300])
+@pytest.mark.parametrize(
+    "call", [("show",), ("export", "--format", "dot"), ("draw", "-o", "none.svg")]
+)
+def test_too_little_memory_is_said_at_once(tmp_path, call, megabytes):
+    """Once libraries were loaded without room for them: OpenBLAS hung, or there was no symbol."""
+    file = tmp_path / "maps.json"
+    file.write_text(json.dumps(document()))
+    limit = functools.partial(
+        resource.setrlimit, resource.RLIMIT_AS, (megabytes << 20, megabytes << 20)
+    )
+    done = run("topomap", call[0], file, *call[1:], preexec_fn=limit, timeout=20)
+    assert (done.returncode, done.stdout) == (3, "")
+    assert done.stderr == "topomap: out of memory\n"
+    assert not (ROOT / "none.svg").exists()
+
+
+@pytest.mark.parametrize(
+    ("form", "title"), [("dot", r'"a\\nb: the only map'), ("clingraph", r'"a\\\\nb: the only map')]
+)
+def test_a_line_break_in_a_name_breaks_no_title(form, title):
+    scene = replace(optimal("grid-3x3-snake")[1][0], name="a\nb")
+    assert exports.FORMATS[form](scene).count(title) == 1
+    assert scene.title.count("\n") == 1

@@ -15,7 +15,7 @@ import pytest
 from conftest import BIN, ROOT, TRIED
 from topomap.environment import by_bearing, flat_bearing, grid, lattice, maze, world
 from topomap.experience import explore
-from topomap.layout import _straight, compass, layout
+from topomap.layout import layout, straight
 from topomap.scenes import Scene
 from topomap.terminal import ARROWS, ASCII, BRAILLE, DOTS, LETTERS, text
 from topomap.topology import TopologicalMap
@@ -134,7 +134,7 @@ def expected(scene):
     world = scene.world
     scale = 4 / world.slots
     first = world.links[scene.at[1]] if len(scene.at) > 1 else next(world.gateways())
-    laid = layout(world, first)
+    laid = straight(world, first)
     letter = {g: LETTERS[n] for n, link in enumerate(laid.crossing) for g in link}
     north = {first[0]: -first[1] * scale}
     for place in (waiting := list(north)):
@@ -225,7 +225,7 @@ def straight_scenes(number):
 def test_random_straight_maps_are_read_back(cases):
     kinds = Counter()
     for scene in straight_scenes(cases):
-        if _straight(scene.world, compass(scene.world)[0]) is None:
+        if straight(scene.world) is None:
             continue  # a picture of dots, which takes its time
         read, _ = agrees(scene)
         kinds["straight"] += 1
@@ -287,12 +287,9 @@ def test_a_torus_in_dots():
     crossing = layout(scene.world, scene.world.links[scene.at[1]]).crossing
     assert is_dots(rows)
     assert crossing
-    letters = Counter(c for row in rows for c in row if c in LETTERS)
-    assert set(letters) <= set(LETTERS[: len(crossing)])
-    assert max(letters.values()) <= 2 <= len(letters)
-    told = " ".join(map(str.strip, words))
-    for number, ((p, s), (q, r)) in enumerate(crossing):
-        assert f"{LETTERS[number]} {p}.{s} - {q}.{r}" in told
+    lies_as_laid_out(rows, scene)
+    told = ", ".join(f"{p}.{s} - {q}.{r}" for (p, s), (q, r) in crossing)
+    assert f" links that cross others: {told} " in " ".join(map(str.strip, words))
 
 
 def dots_of(rows):
@@ -470,7 +467,7 @@ def test_names_do_not_speak_to_the_terminal(topomap, tmp_path):
     done = topomap("show", file)
     assert done.returncode == 0
     assert all(c.isprintable() or c == "\n" for c in done.stdout)
-    assert done.stdout.startswith("x\\x1b]0;bad\\x07\\n: the only map\n1 place, ")
+    assert done.stdout.startswith("x\\x1b]0;bad\\x07\\n: map 1 of 1 found\n1 place, ")
 
 
 @pytest.mark.parametrize(
@@ -495,3 +492,18 @@ def test_maps_that_cannot_be_shown(topomap, tmp_path, change, fault):
 def test_no_map_in_time_is_said_once(topomap):
     done = topomap("show", "instances/manhattan-tour88-signs30.lp", "--timeout", "0.01")
     assert (done.returncode, done.stdout, done.stderr.count("\n")) == (3, "", 1)
+
+
+def test_places_that_are_drawn_close_together_make_no_endless_picture(monkeypatch):
+    """Once such a map had lines of a hundred thousand characters."""
+
+    def close(made, ahead):
+        laid = layout(made, ahead)
+        laid.places.update(dict.fromkeys(list(laid.places)[:2], next(iter(laid.places.values()))))
+        return laid
+
+    scene = walk(lattice("triangles", 2, 2).map, 12, random.Random(1))
+    monkeypatch.setattr("topomap.terminal.layout", close)
+    rows, _ = printed(scene, 80)
+    assert is_dots(rows)
+    assert 80 < max(map(len, rows)) < 5 * 80

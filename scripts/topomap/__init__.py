@@ -26,10 +26,13 @@ searches without it, reads answers, checks and compares them.
 ``report``          maps as JSON, and as lines to read
 ``scenes``          maps to be shown: of an instance, or from a file
 ``layout``          where places, links and pending gateways are drawn
+``planarize``       a planar part of a map, and ways for the other links
+``bent``           drawings with bent lines
 ``draw``            pictures of maps
 ``figures``         the paper's figures, from computed answers
 ``terminal``        maps in the lines of a terminal, and in words
 ``exports``         maps for other tools: GraphML, JSON, DOT, clingraph
+``agreement``       what maps agree and differ on
 ``replay``          explorations step by step: what to show, what was refused
 ``words``           explorations in words
 ``svg``             small pictures for a page

@@ -116,16 +116,24 @@ class Grown:
         return gateway[0], (gateway[1] + self.half) % self.slots
 
     def paths(self) -> list[list[Gateway]]:
-        """Each path that is not circular, as its places with the slot of its heading."""
+        """Each path, as its places with the slot of its heading."""
         paths: set[tuple[Gateway, ...]] = set()
         for place, star in self.stars.items():
             for slot in star:
                 for start in (place, slot), self.opposite((place, slot)):
-                    if self.opposite(start) not in self.links:
-                        path = [start, *map(self.opposite, self.ahead.get(start, []))]
-                        back = [self.opposite(heading) for heading in reversed(path)]
-                        paths.add(tuple(min(path, back)))
+                    path = [start, *map(self.opposite, self.ahead.get(start, []))]
+                    if path[1:] and path[-1] == start:  # it is circular
+                        paths.add(tuple(self.one_way(path[1:])))
+                    elif self.opposite(start) not in self.links:
+                        paths.add(tuple(self.one_way(path)))
         return [list(path) for path in sorted(paths)]
+
+    def one_way(self, path: list[Gateway]) -> list[Gateway]:
+        """The least way to write a path down: it may be taken back, a circular one anywhere."""
+        ways = [path, [self.opposite(heading) for heading in reversed(path)]]
+        if path and self.links.get(path[-1]) == self.opposite(path[0]):
+            ways = [way[n:] + way[:n] for way in ways for n in range(len(way))]
+        return min(ways)
 
     def path_twice(self, _: int) -> bool:
         return any(

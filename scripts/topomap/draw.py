@@ -24,8 +24,9 @@ from matplotlib.textpath import TextPath
 from matplotlib.transforms import Bbox
 
 from topomap import words
+from topomap.bent import Points
 from topomap.errors import printable
-from topomap.layout import Layout, Points, layout
+from topomap.layout import Layout, layout
 from topomap.scenes import Scene
 from topomap.svg import gaps
 from topomap.topology import Gateway, Place, TopologicalMap, gid, label
@@ -59,7 +60,6 @@ def draw(axes: Axes, scene: Scene, faces: bool = True, route: bool = True) -> La
     laid = layout(world, ahead)
     for gateway, line in laid.lines.items():
         _draw_line(axes, world, laid, gateway, line)
-    curves = [_draw_crossing(axes, laid, out, end) for out, end in laid.crossing]
     for place, point in laid.places.items():
         _draw_place(axes, world, laid, place, point)
     texts: list[Box] = []
@@ -72,7 +72,7 @@ def draw(axes: Axes, scene: Scene, faces: bool = True, route: bool = True) -> La
     for place in laid.places:
         if world.landmarks.get(place):
             texts.append(_draw_signs(axes, world, laid, place, [*taken, *texts]))
-    points = np.concatenate([*laid.lines.values(), *curves, *([p] for p in laid.places.values())])
+    points = np.concatenate([*laid.lines.values(), *([p] for p in laid.places.values())])
     corners = np.array(texts).reshape(-1, 2)
     low = np.min([*(points - MARGIN), *(corners - 0.06)], axis=0)
     high = np.max([*(points + MARGIN), *(corners + 0.06)], axis=0)
@@ -172,30 +172,16 @@ def _draw_line(
     axes: Axes, world: TopologicalMap, laid: Layout, gateway: Gateway, line: Points
 ) -> None:
     name = gid(gateway)
-    crosses = any(gateway in link for link in laid.crossing)
+    crossing = [out for out, _ in laid.crossing]
     if gateway not in world.links:
         axes.plot(*line.T, color=PENDING, lw=1.8, solid_capstyle="round", gid=f"pending-{name}")
         axes.plot(*line[-1], "o", ms=4, mfc="white", mec=PENDING, mew=1.2)
-    elif crosses:
-        axes.plot(*line.T, color=CROSSING, lw=2, solid_capstyle="round", gid=f"link-{name}")
-    elif gateway < world.links[gateway]:
+    elif gateway in crossing:
+        name += "-to-" + gid(world.links[gateway])
+        axes.plot(*line.T, color=CROSSING, lw=1.6, ls=DASHES, gid=f"crossing-{name}")
+    elif all(gateway != end for _, end in laid.crossing) and gateway < world.links[gateway]:
         name += "-to-" + gid(world.links[gateway])
         axes.plot(*line.T, color=LINK, lw=2, solid_joinstyle="round", gid=f"link-{name}")
-
-
-def _draw_crossing(axes: Axes, laid: Layout, out: Gateway, end: Gateway) -> Points:
-    """The middle of a link that crosses others, from stub to stub, as it leaves them; returns
-    its points."""
-    (a, b), (d, c) = (laid.lines[gateway][-2:] for gateway in (out, end))
-    far = min(0.7, np.linalg.norm(c - b) / 2)
-    first, last = ((q - p) / np.linalg.norm(q - p) for p, q in ((a, b), (d, c)))
-    t = np.linspace(0, 1, 40)[:, None]
-    points = [b, b + far * first, c + far * last, c]
-    weights = [(1 - t) ** 3, 3 * t * (1 - t) ** 2, 3 * t**2 * (1 - t), t**3]
-    curve = np.asarray(sum(w * p for w, p in zip(weights, points, strict=True)))
-    name = f"crossing-{gid(out)}-to-{gid(end)}"
-    axes.plot(*curve.T, color=CROSSING, lw=1.6, ls=DASHES, gid=name)
-    return curve
 
 
 def _draw_place(

@@ -21,7 +21,7 @@ from topomap.scenes import Scene, of_document
 from topomap.topology import Gateway, Place, gid
 
 if TYPE_CHECKING:
-    from topomap.layout import Points
+    from topomap.bent import Points
 
 Node = tuple[Place | Gateway, dict[str, str]]
 Edge = tuple[Place | Gateway, Place | Gateway, dict[str, str]]
@@ -131,7 +131,8 @@ def _read(file: str, graph: "nx.Graph[Any]") -> str:
     if not same:
         raise InputError(f"{file}: gateways, landmarks, steps or genus do not fit the links and at")
     claims["horizon"] = len(scene.at) - 1
-    tail = {"kind": kind, "count": 1, "complete": True, "fault": None}
+    # There may be more maps of that kind than this one.
+    tail = {"kind": kind, "count": 1, "complete": False, "fault": "a single map, imported"}
     return json.dumps({**claims, "maps": [map_json(scene.world, scene.at)], **tail}) + "\n"
 
 
@@ -151,7 +152,7 @@ def _told(graph: "nx.Graph[Any]") -> str:
 
 def _drawing(scene: Scene) -> tuple[list[Node], list[Edge]]:
     """The map where ``draw`` has it, in attributes of Graphviz, lengths in points. The stub of a
-    pending gateway ends in a node of its own; a link that would cross others has no line."""
+    pending gateway ends in a node of its own; a link that crosses others is dashed."""
     from topomap.layout import layout  # scipy takes its time
 
     world = scene.world
@@ -162,12 +163,13 @@ def _drawing(scene: Scene) -> tuple[list[Node], list[Edge]]:
     for place, point in laid.places.items():
         signs = ", ".join(sorted(world.landmarks.get(place, ())))
         nodes.append((place, {"pos": f"{_point(point)}!"} | ({"xlabel": signs} if signs else {})))
-    crossing = {end for link in laid.crossing for end in link}
+    crossing = [out for out, _ in laid.crossing]
     for a, b in world.edges():
         slots = {"taillabel": str(a[1]), "headlabel": str(b[1])}
         travelled = zip(("steps", "back"), (steps.get(a, ()), steps.get(b, ())), strict=True)
         told = slots | {key: " ".join(map(str, those)) for key, those in travelled if those}
-        told |= {"style": "dashed"} if a in crossing else {"pos": _spline(laid.lines[a])}
+        told |= {"style": "dashed"} if a in crossing else {}
+        told["pos"] = _spline(laid.lines[a])
         edges.append((a[0], b[0], told))
     for a in world.pending():
         nodes.append((a, {"pos": f"{_point(laid.lines[a][-1])}!", **STUB}))

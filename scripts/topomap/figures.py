@@ -13,10 +13,10 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator, NullFormatter
 
 from topomap import branching, draw, figure4, scenes, search, solver
+from topomap.bent import Points
 from topomap.environment import grid
 from topomap.experience import Experience, read
 from topomap.generate import instance
-from topomap.layout import Points
 from topomap.scenes import Scene
 from topomap.solver import Query, Stopped, Watch
 

@@ -269,11 +269,7 @@ def _links(grown: Grown, _: Experience, said: Any) -> bool:
 
 
 def _paths(grown: Grown, _: Experience, said: Any) -> bool:
-    def one_way(path: list[Gateway]) -> list[Gateway]:
-        return min(path, [grown.opposite(heading) for heading in reversed(path)])
-
-    ours = sorted(map(one_way, grown.paths()))
-    return sorted(one_way(_gateways(path)) for path in _list(said)) == ours
+    return sorted(grown.one_way(_gateways(path)) for path in _list(said)) == grown.paths()
 
 
 def _faces(grown: Grown, _: Experience, said: Any) -> bool:

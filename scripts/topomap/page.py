@@ -346,7 +346,7 @@ def _shown(about: Exploration, at: Cube, number: int, glyphs: Glyphs) -> dict[st
 
 def _last(drawn: Drawing, at: Cube) -> str:
     """The link of the last step, to lie under the map."""
-    if len(at) == 1 or any(at[-1] in link for link in drawn.crossing):
+    if len(at) == 1:
         return ""
     return f'<path class="last" d="{svg.path(drawn.lines[at[-1]])}"/>'
 

@@ -1,6 +1,7 @@
 """The subcommands that show maps, and the exit status each ends with."""
 
 import argparse
+import mmap
 import os
 import shutil
 import sys
@@ -14,6 +15,18 @@ from topomap.scenes import Scene
 from topomap.solver import PARTS, Query, Stopped, Watch
 
 FORMATS = ("svg", "png", "pdf")
+MEMORY = 300 << 20  # what numpy, scipy and matplotlib map when they are loaded, and some more
+
+
+def ready() -> None:
+    """Before numpy is loaded: OpenBLAS would wait without end for memory that is not there, and
+    a library that does not fit into it is an ImportError. One thread will do. Raises
+    MemoryError."""
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+    try:
+        mmap.mmap(-1, MEMORY, mmap.MAP_PRIVATE | mmap.MAP_ANONYMOUS, mmap.PROT_READ).close()
+    except OSError:
+        raise MemoryError from None
 
 
 def draw(args: argparse.Namespace) -> int:
@@ -23,6 +36,7 @@ def draw(args: argparse.Namespace) -> int:
         raise InputError(f"{args.output}: a picture is {', '.join(FORMATS)}, by its last letters")
     scene, status = _scene(args)
     if scene is not None:
+        ready()
         from topomap import draw  # matplotlib takes its time
 
         with output(args.output, binary=True) as file:
@@ -35,6 +49,7 @@ def show(args: argparse.Namespace) -> int:
     scene, status = _scene(args)
     if scene is None:
         return status
+    ready()
     from topomap import terminal  # scipy, too
 
     columns = shutil.get_terminal_size().columns
@@ -54,6 +69,7 @@ def export(args: argparse.Namespace) -> int:
     scene, status = _scene(args)
     if scene is None:
         return status
+    ready()
     with output(args.output) as file:
         file.write(exports.FORMATS[args.format](scene))
     return status
@@ -87,6 +103,7 @@ def _scene(args: argparse.Namespace) -> tuple[Scene | None, int]:
 
 def figures(args: argparse.Namespace) -> int:
     """Draw the paper's figures, and some more, into a folder."""
+    ready()
     from topomap import draw
     from topomap.figures import figures
 

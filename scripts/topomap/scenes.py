@@ -9,7 +9,7 @@ from typing import Any
 import networkx as nx
 
 from topomap import maps, solver
-from topomap.errors import InputError
+from topomap.errors import InputError, printable
 from topomap.experience import LARGEST, MOST_SLOTS, Experience, parse
 from topomap.files import text
 from topomap.solver import MEMORY, Found, Query, Stopped, Watch
@@ -22,8 +22,8 @@ MOST_PLACES = 1000  # in a picture
 class Scene:
     """A map, and the dstate after each step of the route in it, from step 0 (or none).
 
-    ``name`` says where it is from; ``number`` of ``many`` such maps; ``kind`` what they are;
-    ``caption`` is a title instead of these.
+    ``name`` says where it is from; ``number`` of ``many`` such maps, which are all if ``whole``;
+    ``kind`` what they are; ``caption`` is a title instead of these.
     """
 
     world: TopologicalMap
@@ -33,12 +33,15 @@ class Scene:
     many: int = 1
     kind: str = ""
     caption: str = ""
+    whole: bool = True
 
     @property
     def title(self) -> str:
         """What the map is, in two lines."""
         world = self.world
-        which = f"map {self.number} of {self.many}" if self.many > 1 else "the only map"
+        which = f"map {self.number} of {self.many}{' found' * (not self.whole)}"
+        if self.whole and self.many == 1:
+            which = "the only map"
         genus = world.genus()
         sizes = [
             _number(len(world.stars), "place"),
@@ -46,7 +49,9 @@ class Scene:
             _number(len(world.paths()), "path"),
             "planar" if genus == 0 else f"genus {genus}",
         ]
-        title = self.caption or f"{self.name}: {which}{f', {self.kind}' * bool(self.kind)}"
+        title = (
+            self.caption or f"{printable(self.name)}: {which}{f', {self.kind}' * bool(self.kind)}"
+        )
         return f"{title}\n{', '.join(sizes)}"
 
     def steps(self) -> dict[Gateway, list[int]]:
@@ -69,6 +74,8 @@ def read(path: str, query: Query, watch: Watch) -> tuple[list[Scene], str | None
     """
     content = text(path, maps.MOST_BYTES)
     if content.lstrip()[:1] in ("{", "["):
+        if query != Query(frozenset()):
+            raise InputError(f"{path}: maps, and no instance: parts, bound, horizon are of none")
         return [scene for document in maps.read(path) for scene in of_document(document)], None
     return best(parse(content, path), path, query, watch)
 
@@ -89,7 +96,7 @@ def best(
     found.sort(key=lambda one: one.at)
     kinds = [one.kind if one.proved else "not proved to be best" for one in found]
     return [
-        Scene(experience.map_of(one.at), one.at, name, number, len(found), kind)
+        Scene(experience.map_of(one.at), one.at, name, number, len(found), kind, whole=not fault)
         for number, (one, kind) in enumerate(zip(found, kinds, strict=True), 1)
     ], fault
 
@@ -98,19 +105,24 @@ def of_document(document: maps.Document) -> list[Scene]:
     """The maps of a document. Raises InputError if one is none."""
     name = str(document.claims.get("instance") or document.where)
     slots = document.claims.get("slots")
+    kind = str(document.claims.get("kind") or "")
+    # A best-first search ends at the first map that it finds.
+    whole = document.claims.get("complete", False) and kind != "closed, best-first"
     scenes = []
     for number, entry in enumerate(document.maps, 1):
         where = f"{document.where}: map {number}"
         if slots is None or not {"places", "links"} <= set(entry):
             raise InputError(f"{where}: slots, places and links are wanted, as solve --json writes")
         world = world_of(slots, entry, where)
+        if sorted(step for step, _, _ in entry["at"]) != list(range(len(entry["at"]))):
+            raise InputError(f"{where}: the steps of at are not 0, 1, 2, ..., each once")
         at = [(place, slot) for _, place, slot in sorted(entry["at"])]
         if any(world.links.get(b, (None,))[0] != a[0] for a, b in pairwise(at)):
             raise InputError(f"{where}: at goes by links that are not there")
         if at and at[0] not in world.gateways():
             raise InputError(f"{where}: at begins at a gateway that is not there")
-        kind = str(document.claims.get("kind") or "")
-        scenes.append(Scene(world, at, name, number, len(document.maps), kind))
+        many = len(document.maps)
+        scenes.append(Scene(world, at, name, number, many, kind, whole=whole))
     return scenes
 
 
@@ -126,6 +138,8 @@ def world_of(slots: int, entry: dict[str, Any], where: str) -> TopologicalMap:
             int(place["place"]): frozenset(map(str, place["landmarks"]))
             for place in entry["places"]
         }
+        if len(stars) != len(entry["places"]):
+            raise ValueError
         pairs = [tuple((int(p), int(s)) for p, s in link) for link in entry["links"]]
         ends = [end for link in pairs for end in link]
         links = {a: b for one, other in pairs for a, b in ((one, other), (other, one))}

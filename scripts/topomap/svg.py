@@ -36,7 +36,7 @@ Box = tuple[int, int, int, int]  # left, top, width, height
 @dataclass(frozen=True)
 class Drawing:
     """Where a map is drawn: places, of each gateway the line that leaves by it, y downwards; the
-    links that cross others, as stubs; the frame, x, y, width and height; faces, each its
+    links that cross others; the frame, x, y, width and height; faces, each its
     outline and a point in it, the outer one without an outline; and where the landmarks of
     places begin."""
 
@@ -63,8 +63,6 @@ def drawing(world: TopologicalMap, ahead: Gateway | None, small: bool = False) -
     if small and not narrowest:
         return None
     points = [*places.values(), *(p for line in lines.values() for p in line)]
-    for out, end in laid.crossing:
-        points += _between(lines[out], lines[end])
     signs = _signs(world, places, lines)
     texts = [_box(world, place, point) for place, point in signs.items()]
     frame = _frame(points, texts)
@@ -184,7 +182,7 @@ def _scaled(
     lines = {}
     for gateway, line in laid.lines.items():
         points = [unit * p for p in line]
-        if gateway not in linked:
+        if gateway not in world.links:
             way = (line[1] - line[0]) / math.dist(line[0], line[1])
             points = [unit * line[0] + far * way for far in (0, STUB)]
         lines[gateway] = [_point(p) for p in points]
@@ -271,7 +269,7 @@ def body(
     parts += [f'<circle class="end" cx="{x}" cy="{y}" r="3"/>' for x, y in ends]
     for out, end in drawn.crossing:
         kind = "crossing apart" if (out, end) in apart or (end, out) in apart else "crossing"
-        parts += _lines(kind, [_curve(drawn.lines[out], drawn.lines[end])])
+        parts += _lines(kind, [path(drawn.lines[out])])
     if not small:
         for gateway, end in world.edges():
             along = sorted(steps.get(gateway, []) + steps.get(end, []))
@@ -310,27 +308,6 @@ def path(line: Sequence[Point]) -> str:
 def _lines(kind: str, paths: Sequence[str]) -> list[str]:
     """One element for all lines of a kind."""
     return [f'<path class="{kind}" d="{"".join(paths)}"/>'] if paths else []
-
-
-def _between(out: Line, end: Line) -> Line:
-    """Corners that draw a curve from the end of a stub to that of another, to leave both as they
-    do."""
-    (a, b), (d, c) = out[-2:], end[-2:]
-    far = math.dist(b, c) / 2.5
-
-    def beyond(p: Point, q: Point) -> Point:
-        length = math.dist(p, q) or 1.0
-        x, y = (round(q[axis] + far * (q[axis] - p[axis]) / length) for axis in (0, 1))
-        return x, y
-
-    return [beyond(a, b), beyond(d, c)]
-
-
-def _curve(out: Line, end: Line) -> str:
-    """From the place of a stub to that of another."""
-    curve = " ".join(f"{x} {y}" for x, y in (*_between(out, end), end[-1]))
-    back = " ".join(f"{x} {y}" for x, y in reversed(end[:-1]))
-    return f"{path(out)}C{curve}L{back}"
 
 
 def _along(line: Line, steps: Sequence[int]) -> str:

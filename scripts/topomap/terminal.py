@@ -3,8 +3,8 @@
 Straight maps along two directions are drawn with lines of characters, columns and rows by the
 order of the places, so that lengths may be uneven; all others with the dots of Braille. Places
 are bare numbers, the agent's in brackets, with an arrow for the gateway where it stands; faces
-are numbers in parentheses. A pending gateway is a short stub with an open end; a link that would
-cross others is two stubs with one letter.
+are numbers in parentheses. A pending gateway is a short stub with an open end. A link that would
+cross others is two stubs with one letter, or a line of dots.
 """
 
 import math
@@ -16,10 +16,11 @@ from string import ascii_letters
 
 import numpy as np
 
+from topomap.bent import Points
 from topomap.errors import printable
-from topomap.layout import Layout, Points, layout
+from topomap.layout import Layout, layout, straight
 from topomap.scenes import Scene
-from topomap.topology import Gateway, Place, TopologicalMap, gid, label
+from topomap.topology import Gateway, Place, gid, label
 
 Cell = tuple[int, int]  # row and column
 PLACE, AGENT, LINK, CROSSING, PENDING, SIGN, FACE = "1", "1;33", "", "31", "34", "1;32", "2"
@@ -36,7 +37,7 @@ ASCII = str.maketrans(
 SAME = 0.03  # coordinates that differ less are one row or column; layouts keep lines 0.05 apart
 ACROSS, DOWN, FACING = 5, 3, 5  # free cells between columns, and rows; where two stubs face
 FINEST = 28.0  # dots that a link of length 1 takes
-LARGER = 1.2, 40  # where numbers fall onto each other: how much, and how often at most
+LARGER = 1.2, 8  # where numbers fall onto each other: how much, and how often at most
 
 
 class Taken(Exception):
@@ -77,11 +78,15 @@ def _in_colour(text: str, colour: str) -> str:
 
 def text(scene: Scene, width: int, coloured: bool = False) -> str:
     """A map in a terminal of that many columns. Maps of lines are as wide as they need; maps of
-    dots fit, unless numbers would fall onto each other."""
+    dots fit, unless numbers would fall onto each other: then they are up to four times as wide."""
     world = scene.world
-    laid = layout(world, world.links[scene.at[1]] if len(scene.at) > 1 else None)
-    letters = _letters(laid)
-    canvas = boxes(scene, laid, letters) or dots(scene, laid, letters, width)
+    ahead = world.links[scene.at[1]] if len(scene.at) > 1 else None
+    laid = straight(world, ahead)
+    letters = _letters(laid) if laid else {}
+    canvas = boxes(scene, laid, letters) if laid else None
+    if laid is None or canvas is None:
+        laid, letters = layout(world, ahead), {}
+        canvas = dots(scene, laid, width)
     told = [*scene.title.rsplit("\n", 1), "", *canvas.lines(coloured), ""]
     for line in words(scene, laid, letters):
         told += textwrap.wrap(printable(line), width, subsequent_indent="    ")
@@ -243,7 +248,7 @@ def _number_faces(
             canvas.put(row, at, name, FACE)
 
 
-def dots(scene: Scene, laid: Layout, letters: dict[Gateway, str], width: int) -> Canvas:
+def dots(scene: Scene, laid: Layout, width: int) -> Canvas:
     """The map in dots, in as many columns as there are, or more if numbers would meet."""
     names = _names(scene)
     points = np.concatenate([*laid.lines.values(), *([p] for p in laid.places.values())])
@@ -267,14 +272,20 @@ def dots(scene: Scene, laid: Layout, letters: dict[Gateway, str], width: int) ->
     lines = {gateway: (line - low) * scale for gateway, line in laid.lines.items()}
     for gateway, line in lines.items():
         other = scene.world.links.get(gateway)
-        if other in lines and gateway not in letters and other < gateway:
+        if other in lines and other < gateway:
             continue  # drawn from its other end
         for x, y in _along(line):
             at = _cell((x, y))
             passing[at].add(gateway)
             marked[at] |= DOTS[3 - math.floor(y) % 4][math.floor(x) % 2]
+    crossing = {end for link in laid.crossing for end in link}
+
+    def colour_of(gateway: Gateway) -> str:
+        links = scene.world.links
+        return CROSSING if gateway in crossing else LINK if gateway in links else PENDING
+
     for at, bits in marked.items():
-        kinds = {_colour(scene.world, letters, gateway) for gateway in passing[at]}
+        kinds = set(map(colour_of, passing[at]))
         colour = next(kind for kind in (CROSSING, PENDING, LINK) if kind in kinds)
         canvas.put(*at, chr(BRAILLE + bits), colour)
     taken = set()
@@ -284,13 +295,8 @@ def dots(scene: Scene, laid: Layout, letters: dict[Gateway, str], width: int) ->
         taken |= {(y, x - _before(name) + n) for n in range(len(name))}
     for gateway, line in lines.items():
         at = _cell(line[-1])
-        if (
-            (gateway in letters or gateway not in scene.world.links)
-            and passing[at] == {gateway}
-            and at not in taken
-        ):
-            colour = _colour(scene.world, letters, gateway)
-            canvas.put(*at, letters.get(gateway, OPEN), colour, over=True)
+        if gateway not in scene.world.links and passing[at] == {gateway} and at not in taken:
+            canvas.put(*at, OPEN, PENDING, over=True)
             taken.add(at)
     if scene.at:
         line = lines[scene.at[-1]]
@@ -320,26 +326,24 @@ def _along(line: Points) -> Iterator[tuple[float, float]]:
             yield x + (to_x - x) * n / steps, y + (to_y - y) * n / steps
 
 
-def _colour(world: TopologicalMap, letters: dict[Gateway, str], gateway: Gateway) -> str:
-    return CROSSING if gateway in letters else LINK if gateway in world.links else PENDING
-
-
 def words(scene: Scene, laid: Layout, letters: dict[Gateway, str]) -> Iterator[str]:
     """What the picture shows, line by line. ``P.S`` is gateway S of place P."""
     world = scene.world
+
+    def letter(gateway: Gateway) -> str:
+        return f"{letters[gateway]} " if gateway in letters else ""
+
     if scene.at:
         yield f"the agent is at place {label(scene.at[-1][0])}, at the gateway {gid(scene.at[-1])}"
     for number, path in enumerate(world.paths(), 1):
         circular = world.links.get(path[-1]) == world.opposite(path[0])
         places = " ".join(label(place) for place, _ in path)
         yield f"path {number}{' (circular)' * circular}: {places}"
-    if laid.crossing:
-        yield "faces, without the links that cross others:"
-    for number, face in enumerate(laid.faces, 1):
+    for number, face in enumerate(world.faces(), 1):
         outer = " (outer)" * (number - 1 == laid.outer)
         yield f"face {number}{outer}: {' '.join(label(place) for place, _ in face) or 'all'}"
     if laid.crossing:
-        links = ", ".join(f"{letters[a]} {gid(a)} - {gid(b)}" for a, b in laid.crossing)
+        links = ", ".join(f"{letter(a)}{gid(a)} - {gid(b)}" for a, b in laid.crossing)
         yield f"links that cross others: {links}"
     yield f"pending gateways: {' '.join(map(gid, world.pending())) or 'none'}"
     signs = ((place, sorted(world.landmarks.get(place, ()))) for place in world.stars)
