@@ -64,8 +64,12 @@ def draw(axes: Axes, scene: Scene, faces: bool = True, route: bool = True) -> La
         _draw_place(axes, world, laid, place, point)
     texts: list[Box] = []
     if route:
+        dots = {gateway: _even(line) for gateway, line in laid.lines.items()}
         for gateway, steps in scene.steps().items():
-            texts.append(_draw_steps(axes, laid, gateway, steps))
+            own = gateway, world.links[gateway]
+            others = np.array([line for end, line in dots.items() if end not in own])
+            spots = others.reshape(-1, 2)
+            texts.append(_draw_steps(axes, laid, gateway, steps, spots))
     taken = [(x - RADIUS, y - RADIUS, x + RADIUS, y + RADIUS) for x, y in laid.places.values()]
     stubs = [line for end, line in laid.lines.items() if end not in world.links]
     taken += [(*(line.min(0) - 0.05), *(line.max(0) + 0.05)) for line in stubs]
@@ -247,17 +251,26 @@ def _shared(one: Box, other: Box) -> float:
     return max(0.0, wide) * max(0.0, high)
 
 
-def _draw_steps(axes: Axes, laid: Layout, gateway: Gateway, steps: list[int]) -> Box:
-    """The numbers of the steps that leave by a gateway, on the right of the way. Returns where
-    they are."""
-    line = laid.lines[gateway]
-    if len(line) == 2:
-        line = np.linspace(line[0], line[-1], 9)
-    k = len(line) // 2
-    ahead = line[k + len(line) % 2] - line[k - 1]
-    ahead = ahead / np.linalg.norm(ahead)
-    right = np.array([ahead[1], -ahead[0]])
-    middle = line[k] if len(line) % 2 else (line[k] + line[k - 1]) / 2
+def _even(line: Points, parts: int = 24) -> Points:
+    """Points on a line, in equal steps from its beginning to its end."""
+    along = np.concatenate([[0], np.linalg.norm(np.diff(line, axis=0), axis=1).cumsum()])
+    at = np.linspace(0, along[-1], parts + 1)
+    return np.stack([np.interp(at, along, line[:, axis]) for axis in (0, 1)], 1)
+
+
+def _draw_steps(
+    axes: Axes, laid: Layout, gateway: Gateway, steps: list[int], others: Points
+) -> Box:
+    """The numbers of the steps that leave by a gateway, on the right of the way; not near other
+    lines, of which there are points. Returns where they are."""
+    line = _even(laid.lines[gateway])
+    spots: list[tuple[float, int, Points, Points, Points]] = []
+    for k in (12, 7, 17):  # the middle, but where another line is near
+        ahead = (line[k + 2] - line[k - 2]) / np.linalg.norm(line[k + 2] - line[k - 2])
+        right = np.array([ahead[1], -ahead[0]])
+        away = np.linalg.norm(others - line[k] - 0.13 * right, axis=1).min(initial=1)
+        spots.append((-min(0.15, round(away, 3)), len(spots), line[k], ahead, right))
+    *_, middle, ahead, right = min(spots, key=lambda spot: spot[:2])
     x, y = middle + 0.13 * right
     text = " ".join(map(str, steps[:3])) + (" …" if len(steps) > 3 else "")
     axes.text(
