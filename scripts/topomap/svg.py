@@ -63,14 +63,16 @@ def drawing(world: TopologicalMap, ahead: Gateway | None, small: bool = False) -
     if small and not narrowest:
         return None
     points = [*places.values(), *(p for line in lines.values() for p in line)]
-    signs = _signs(world, places, lines)
+    taken = _taken(world, places, lines)
+    signs = _signs(world, places, lines, taken)
     texts = [_box(world, place, point) for place, point in signs.items()]
     frame = _frame(points, texts)
     faces: list[tuple[int, Line, Point]] = []
     if not small and not laid.crossing:  # else they are not the map's
         from topomap.draw import inside  # so does matplotlib
 
-        taken = [(*_turned(x, y + high), *_turned(x + wide, y)) for x, y, wide, high in texts]
+        # As a layout has them, y upwards.
+        upwards = [(x, -y - high, x + wide, -y) for x, y, wide, high in [*taken, *texts]]
         x, y, wide, high = frame
         for number, face in enumerate(laid.faces, 1):
             if number - 1 == laid.outer:
@@ -78,12 +80,12 @@ def drawing(world: TopologicalMap, ahead: Gateway | None, small: bool = False) -
                 frame = (x, y, max(wide, 64), high + 14)
             else:
                 outline = unit * laid.outline(face)
-                middle = _point(inside(outline, taken))
+                middle = _point(inside(outline, upwards))
                 faces.append((number, [_point(p) for p in outline], middle))
     return Drawing(places, lines, laid.crossing, frame, faces, signs)
 
 
-def _frame(points: Sequence[Point], texts: Sequence[tuple[int, int, int, int]]) -> Box:
+def _frame(points: Sequence[Point], texts: Sequence[Box]) -> Box:
     """What is round points, with a margin, and texts."""
     sides = (-1, 1)
     corners = [(x + a * MARGIN, y + b * MARGIN) for x, y in points for a in sides for b in sides]
@@ -91,11 +93,6 @@ def _frame(points: Sequence[Point], texts: Sequence[tuple[int, int, int, int]]) 
         corners += [(x - GAP, y - GAP), (x + wide + GAP, y + high + GAP)]
     xs, ys = zip(*corners, strict=True)
     return min(xs), min(ys), max(xs) - min(xs), max(ys) - min(ys)
-
-
-def _turned(x: int, y: int) -> tuple[float, float]:
-    """A point as in a layout, y upwards."""
-    return float(x), float(-y)
 
 
 def _wide(text: str) -> int:
@@ -109,18 +106,27 @@ def _box(world: TopologicalMap, place: Place, point: Point) -> Box:
     return (*point, _wide(words.signs(world.landmarks[place])), HIGH)
 
 
-def _signs(
+def _taken(
     world: TopologicalMap, places: Mapping[Place, Point], lines: Mapping[Gateway, Line]
-) -> dict[Place, Point]:
-    """Where the landmarks of the places are: in the widest gap between the lines that leave; if
-    they cover something there, in that where they cover least."""
+) -> list[Box]:
+    """What places and pending gateways cover."""
     size = 2 * RADIUS
-    taken = [(x - RADIUS, y - RADIUS, size, size) for x, y in places.values()]
-    taken += [
+    return [(x - RADIUS, y - RADIUS, size, size) for x, y in places.values()] + [
         (min(x, u) - 3, min(y, v) - 3, abs(u - x) + 6, abs(v - y) + 6)
         for gateway, ((x, y), *_, (u, v)) in lines.items()
         if gateway not in world.links
     ]
+
+
+def _signs(
+    world: TopologicalMap,
+    places: Mapping[Place, Point],
+    lines: Mapping[Gateway, Line],
+    taken: Sequence[Box],
+) -> dict[Place, Point]:
+    """Where the landmarks of the places are: in the widest gap between the lines that leave; if
+    they cover something there, in that where they cover least."""
+    covered = list(taken)
     found: dict[Place, Point] = {}
     for place, (x, y) in places.items():
         if world.landmarks.get(place):
@@ -136,8 +142,8 @@ def _signs(
                     left = round(x + (RADIUS + GAP) * a + (_sign(a) - 1) * wide / 2)
                     top = round(y + (RADIUS + GAP) * b + (_sign(b) - 1) * high / 2)
                     boxes.append((left, top, wide, high))
-            best = min(boxes, key=lambda box: sum(_shared(box, other) for other in taken))
-            taken.append(best)
+            best = min(boxes, key=lambda box: sum(_shared(box, other) for other in covered))
+            covered.append(best)
             found[place] = best[:2]
     return found
 
