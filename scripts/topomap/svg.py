@@ -279,7 +279,8 @@ def body(
     if not small:
         for gateway, end in world.edges():
             along = sorted(steps.get(gateway, []) + steps.get(end, []))
-            parts.append(_along(drawn.lines[gateway], along))
+            others = [line for other, line in drawn.lines.items() if other not in (gateway, end)]
+            parts.append(_along(drawn.lines[gateway], along, others))
     for place, (x, y) in drawn.places.items():
         kind = "place strange" if place in strange else "place"
         kind += " signed" if world.landmarks.get(place) else ""
@@ -316,14 +317,25 @@ def _lines(kind: str, paths: Sequence[str]) -> list[str]:
     return [f'<path class="{kind}" d="{"".join(paths)}"/>'] if paths else []
 
 
-def _along(line: Line, steps: Sequence[int]) -> str:
-    """The steps along a link, in its middle."""
-    k = len(line) // 2
-    (x, y), (u, v) = line[k - 1], line[k]
-    if len(line) % 2:
-        x, y = u, v
+def _along(line: Line, steps: Sequence[int], others: Sequence[Line]) -> str:
+    """The steps along a link, in its middle, or where other lines are not so near."""
+    dots = [_at(other, n / 10) for other in others for n in range(1, 10)]
+    spots = [_at(line, share) for share in (0.5, 0.3, 0.7)]
+    far = [min([APART // 2, *(int(math.dist(spot, dot)) for dot in dots)]) for spot in spots]
+    x, y = spots[far.index(max(far))]
     text = " ".join(map(str, steps[:4])) + (" …" if len(steps) > 4 else "")
-    return f'<text class="along" x="{(x + u) // 2}" y="{(y + v) // 2}">{text}</text>'
+    return f'<text class="along" x="{x}" y="{y}">{text}</text>'
+
+
+def _at(line: Line, share: float) -> Point:
+    """The point at a share of the length of a line."""
+    left = share * sum(math.dist(p, q) for p, q in pairwise(line))
+    for (x, y), (u, v) in pairwise(line):
+        length = math.dist((x, y), (u, v))
+        if length and left <= length:
+            return round(x + left / length * (u - x)), round(y + left / length * (v - y))
+        left -= length
+    return line[-1]
 
 
 def agent(drawn: Drawing, dstate: Gateway) -> str:
