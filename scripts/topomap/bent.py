@@ -5,9 +5,10 @@ a centre. It starts from a drawing on a grid, in which no triangle is folded, an
 a good shape by steps that fold none, so nothing comes to cross and every rotation stays right.
 """
 
-from collections import deque
-from collections.abc import Callable
+from collections import defaultdict
+from collections.abc import Sequence
 from itertools import combinations, pairwise
+from typing import Any
 
 import networkx as nx
 import numpy as np
@@ -19,12 +20,16 @@ from topomap.topology import Gateway, Place, TopologicalMap
 
 Points = NDArray[np.float64]
 Numbers = NDArray[np.int64]
+# Terms of an energy, each a function of one number that some numbers make up: which ones, how it
+# grows with each of them, the term's first derivative by it, and its second, or nothing if less.
+Term = tuple[Numbers, Points, Points, Points]
 STUB = 0.36  # the length of a stub, where a link is of length 1
-BENDS = 3  # inner points of a link that is not straight
-PIECE = 0.7  # the length of a link's piece up to a crossing
-MEMORY = 20  # steps that the descent remembers
-WEIGHTS = 100.0, 10.0, 1.0, 0.1, 0.01, 0.002  # of the triangles, one after the other
-STEPS = 1500  # of the descent, at most, with each weight
+BENDS = 5  # inner points of a link that is not straight
+PIECE, LOOP = 0.7, 1.6  # the lengths of a link's piece up to a crossing, and of a loop
+# How much triangles resist, and how much places and lines keep apart, one after the other.
+STAGES = (1.0, 1.0), (0.1, 4.0), (0.01, 10.0), (0.002, 40.0)
+STEPS = 200  # of the descent, at most, with each weight
+LITTLE = 1e-9  # stiffness that leaves none without any
 
 
 def bent(world: TopologicalMap, crossings: list[Place], steps: int) -> dict[Gateway, Points]:
@@ -33,23 +38,12 @@ def bent(world: TopologicalMap, crossings: list[Place], steps: int) -> dict[Gate
     mesh = _Mesh(world, crossings)
     shape = _Shape(mesh)
     points = mesh.start()
-    free = np.setdiff1d(np.arange(mesh.size), mesh.rim)
-
-    def drawing(x: Points) -> Points:
-        points[free] = x[: 2 * len(free)].reshape(-1, 2)
-        return points
-
-    def energy(weight: float) -> Callable[[Points], tuple[float, Points]]:
-        def at(x: Points) -> tuple[float, Points]:
-            total, slope, turned = shape(drawing(x), x[2 * len(free) :], weight)
-            return total, np.concatenate([slope[free].ravel(), turned])
-
-        return at
-
-    x = np.concatenate([points[free].ravel(), shape.norths(points)])
-    for weight in WEIGHTS:
-        x = _descend(energy(weight), x, steps)
-    points = drawing(x)
+    x = np.concatenate([points.ravel(), shape.norths(points)])
+    rim = np.concatenate([2 * np.array(mesh.rim), 2 * np.array(mesh.rim) + 1])
+    free = np.setdiff1d(np.arange(len(x)), rim)
+    for shape.weight, shape.apart in STAGES:
+        x = _descend(shape, x, free, steps)
+    points = x[: 2 * mesh.size].reshape(-1, 2)
     lines = {}
     for start in world.gateways():
         if start[0] not in crossings:
@@ -64,15 +58,19 @@ def bent(world: TopologicalMap, crossings: list[Place], steps: int) -> dict[Gate
 def faces_of(world: TopologicalMap) -> tuple[list[list[Gateway]], int]:
     """The faces, and which is the outer one: that whose walk turns left most, at places as
     even as a compass; among equals the longest."""
-    faces = world.faces()
+    faces, half = world.faces(), world.slots // 2
 
     def turning(face: list[Gateway]) -> int:
         """To the right, in slots."""
         total = 0
-        for gateway in face:
-            _, arrival = world.links[gateway]
-            _, leaving = world.next(gateway)
-            total += world.slots // 2 - (arrival - leaving - 1) % world.slots - 1
+        for place, slot in face:
+            end, arrival = world.links[place, slot]
+            _, leaving = world.next((place, slot))
+            total += half - (arrival - leaving - 1) % world.slots - 1
+            if end == place:  # a loop turns by itself, round the lesser angle
+                between = (arrival - slot) % world.slots
+                right = between < half or (between == half and slot < arrival)
+                total += half + between if right else between - world.slots - half
         return total
 
     return faces, min(range(len(faces)), key=lambda n: (turning(faces[n]), -len(faces[n]), n))
@@ -99,7 +97,7 @@ class _Mesh:
             if end is None:
                 self.lines[gateway] = [start, self._point()]
             elif gateway not in self.lines:
-                inner = 1 if {gateway[0], end[0]} & set(crossings) else BENDS
+                inner = 2 if {gateway[0], end[0]} & set(crossings) else BENDS
                 line = [start, *(self._point() for _ in range(inner)), self.place[end[0]]]
                 self.lines[gateway], self.lines[end] = line, line[::-1]
         triangles = []
@@ -184,17 +182,23 @@ class _Mesh:
 
 
 class _Shape:
-    """How far a drawing is from a good one, in energy, and how each point would lessen it.
+    """How far a drawing is from a good one, in energy, and how each number of it would lessen it.
 
-    Links are springs of length 1, stiff against bending; the gateways of a place are
-    drawn to an even compass, which may turn; places keep apart. Each triangle resists
-    the more, the flatter it is, by ``weight``."""
+    Links are springs of length 1, stiff against bending; the gateways of a place are drawn to an
+    even compass, which may turn; places keep apart. Each triangle resists the more, the flatter
+    it is, by ``weight``. The numbers are the coordinates of the points, then the norths: the
+    direction of each place's slot 0, in radians.
+    """
 
-    LENGTH, BEND, COMPASS, APART = 1.0, 8.0, 1.5, 4.0
-    NEAR = 0.9, 0.6, 0.4  # to a place: a place, a crossing, another point of a line
+    STRETCH, SQUEEZE, BEND, LOOP, COMPASS = 0.5, 2.0, 27.0, 0.3, 3.0
+    # Places to each other, a crossing to either, a place to a line, and two lines.
+    NEAR = 0.9, 0.6, 0.4, 0.25
+    STUBS = 10.0  # times as firm as links
+    LEAST = 0.1  # of the compass's stiffness, where a gateway is far from its direction
 
     def __init__(self, mesh: _Mesh) -> None:
         world = mesh.world
+        self.weight, self.apart = STAGES[0]
         self.triangles = mesh.triangles.T
         self.size, self.places = mesh.size, len(world.stars) - len(mesh.crossings)
         self.slots = world.slots
@@ -203,124 +207,194 @@ class _Shape:
         sides = [(*mesh.lines[gateway][:2], STUB) for gateway in world.pending()]
         for gateway, _ in world.edges():
             line = mesh.lines[gateway]
-            whole = 1.0 if len(line) == BENDS + 2 else PIECE
+            weak = line[0] == line[-1]  # a loop cannot but bend
+            whole = LOOP if weak else 1.0 if len(line) == BENDS + 2 else PIECE
             sides += [(a, b, whole / (len(line) - 1)) for a, b in pairwise(line)]
-            bends += list(zip(line, line[1:], line[2:], strict=False))
+            bends += [(*three, weak) for three in zip(line, line[1:], line[2:], strict=False)]
         for place in mesh.crossings:
             for slot in sorted(world.stars[place])[:2]:
                 a, b = (mesh.lines[end] for end in ((place, slot), world.opposite((place, slot))))
-                bends.append((a[1], a[0], b[1]))
+                bends.append((a[1], a[0], b[1], False))
         self.sides = np.array([side[:2] for side in sides], int).reshape(-1, 2).T
         self.lengths = np.array([side[2] for side in sides])
-        self.bends = np.array(bends).reshape(-1, 3).T
+        self.firm = np.where(np.arange(len(sides)) < len(world.pending()), self.STUBS, 1.0)
+        self.bends = np.array([bend[:3] for bend in bends], int).reshape(-1, 3).T
+        self.stiff = np.array([self.LOOP if bend[3] else self.BEND for bend in bends])
         real = [gateway for gateway in world.gateways() if gateway[0] not in mesh.crossings]
         starts = [(mesh.place[p], mesh.lines[p, s][1], s) for p, s in real]
         self.gateways = np.array(starts).T
-        own = {(p, q) for line in mesh.lines.values() for p in line for q in line}
+        at = defaultdict(list)
+        for line in mesh.lines.values():
+            at[line[0]].append(line)
+        beside: dict[int, set[int]] = defaultdict(set)  # of each point those of its lines, and
+        for line in mesh.lines.values():  # where they leave a place the lines that leave it
+            for point in line:
+                beside[point] |= set(line)
+            beside[line[1]] |= {other[1] for other in at[line[0]]}
         pairs = {(p, q) for walk in mesh.walks for p in walk for q in walk if p < q}
-        pairs = {pair for pair in pairs if pair[0] < self.places} - own
         pairs |= set(combinations(range(len(world.stars)), 2))
-        self.pairs = np.array(sorted(pairs)).reshape(-1, 2).T
-        kinds = [self.pairs[1] < self.places, self.pairs[1] < len(world.stars)]
-        self.near = np.select(kinds, self.NEAR[:2], self.NEAR[2])
+        apart = [
+            pair
+            for pair in sorted(pairs)
+            if pair[1] < len(world.stars) or pair[1] not in beside[pair[0]]
+        ]
+        self.pairs = np.array(apart, int).reshape(-1, 2).T
+        one, other = self.pairs
+        kinds = [other < self.places, other < len(world.stars), one < self.places]
+        self.near = np.select(kinds, self.NEAR[:3], self.NEAR[3])
 
     def norths(self, points: Points) -> Points:
-        """The direction of each place's slot 0 that fits its gateways best, in radians."""
+        """The norths that fit the gateways best."""
         place, end, slot = self.gateways
         out = points[end] - points[place]
         turned = np.arctan2(out[:, 1], out[:, 0]) + 2 * np.pi * slot / self.slots
         x, y = (np.bincount(place, f(turned), self.places) for f in (np.cos, np.sin))
         return np.arctan2(y, x)
 
-    def __call__(
-        self, points: Points, norths: Points, weight: float
-    ) -> tuple[float, Points, Points]:
-        """The energy, and its slope by point and by north; infinite if a triangle is folded."""
+    def reach(self, x: Points, step: Points) -> float:
+        """How much of a step goes until a triangle is folded."""
+        points, moves = (z[: 2 * self.size].reshape(-1, 2) for z in (x, step))
+        a, b, c = self.triangles
+        u, v, du, dv = (
+            points[b] - points[a],
+            points[c] - points[a],
+            moves[b] - moves[a],
+            moves[c] - moves[a],
+        )
+        # Their areas are area + t * (grow + t * bend): the first positive root in t.
+        area, grow, bend = cross(u, v), cross(u, dv) + cross(du, v), cross(du, dv)
+        root = np.sqrt(np.maximum(0, grow**2 - 4 * area * bend))
+        real = grow**2 >= 4 * area * bend
+        below = np.where(grow < 0, root - grow, -root - grow)  # that of the two which cannot cancel
+        with np.errstate(divide="ignore", invalid="ignore"):
+            roots = np.stack([2 * area / below, below / (2 * bend)])
+        roots = roots[:, real]
+        return float(np.min(roots[roots > 0], initial=np.inf))
+
+    def __call__(self, x: Points) -> tuple[float, list[Term]]:
+        """The energy, infinite if a triangle is folded, and its terms."""
+        weight = self.weight
+        points, norths = x[: 2 * self.size].reshape(-1, 2), x[2 * self.size :]
         total = 0.0
-        moved: list[tuple[Numbers, Points]] = []
+        terms: list[Term] = []
+
+        def add(
+            numbers: Sequence[Numbers], ways: Sequence[Points], pull: Points, stiff: Any
+        ) -> None:
+            columns = np.concatenate([np.stack([2 * n, 2 * n + 1]) for n in numbers])
+            terms.append((columns, np.hstack(ways).T, pull, np.broadcast_to(stiff, pull.shape)))
+
         a, b, c = self.triangles
         u, v = points[b] - points[a], points[c] - points[a]
-        w, area = v - u, cross(u, v)
-        squares = (u**2 + v**2 + w**2).sum(1)
+        area = cross(u, v)
         if area.min() <= 0:
-            return np.inf, points, norths
+            return np.inf, []
+        squares = (u**2 + v**2 + (v - u) ** 2).sum(1)
         total += weight * (np.log(squares) - np.log(area)).sum()
-        by_area, by_squares = -weight / area[:, None], 2 * weight / squares[:, None]
-        at_b = by_area * np.stack([v[:, 1], -v[:, 0]], 1) + by_squares * (u - w)
-        at_c = by_area * np.stack([-u[:, 1], u[:, 0]], 1) + by_squares * (v + w)
-        moved += [(b, at_b), (c, at_c), (a, -at_b - at_c)]
+        at_b = np.stack([v[:, 1], -v[:, 0]], 1) / area[:, None]
+        at_c = np.stack([-u[:, 1], u[:, 0]], 1) / area[:, None]
+        every = np.full(len(area), weight)
+        add([a, b, c], [-at_b - at_c, at_b, at_c], -every, weight)
+        for start, end, side in (a, b, u), (a, c, v), (b, c, v - u):
+            for axis in np.eye(2):
+                along = np.tile(axis, (len(side), 1))
+                add(
+                    [start, end],
+                    [-along, along],
+                    2 * weight * side @ axis / squares,
+                    2 * weight / squares,
+                )
 
         a, b = self.sides
-        side = points[b] - points[a]
-        length = np.linalg.norm(side, axis=1)
+        along, length = _unit(points[b] - points[a])
         stretch = length / self.lengths - 1
-        total += self.LENGTH * (self.lengths * stretch**2).sum()
-        pull = (2 * self.LENGTH * stretch / length)[:, None] * side
-        moved += [(b, pull), (a, -pull)]
+        force = np.where(stretch > 0, self.STRETCH, self.SQUEEZE) * self.firm
+        total += (force * self.lengths * stretch**2).sum()
+        add([a, b], [-along, along], 2 * force * stretch, 2 * force / self.lengths)
+        aside = np.stack([-along[:, 1], along[:, 0]], 1)
+        stiff = 2 * force * np.maximum(0, stretch) / length
+        add([a, b], [-aside, aside], 0 * stretch, stiff)
 
         a, b, c = self.bends
         bend = points[a] - 2 * points[b] + points[c]
-        total += self.BEND * (bend**2).sum()
-        moved += [(a, 2 * self.BEND * bend), (b, -4 * self.BEND * bend), (c, 2 * self.BEND * bend)]
-
-        a, b, slot = self.gateways
-        angle = norths[a] - 2 * np.pi * slot / self.slots
-        wish = np.stack([np.cos(angle), np.sin(angle)], 1)
-        side = points[b] - points[a]
-        length = np.linalg.norm(side, axis=1)
-        cosine = (side * wish).sum(1) / length
-        total += self.COMPASS * (1 - cosine).sum()
-        pull = self.COMPASS * ((cosine / length**2)[:, None] * side - wish / length[:, None])
-        moved += [(b, pull), (a, -pull)]
-        turned = np.bincount(a, self.COMPASS * cross(side, wish) / length, self.places)
+        total += (self.stiff * (bend**2).sum(1)).sum()
+        for axis in np.eye(2):
+            along = np.tile(axis, (len(bend), 1))
+            add(
+                [a, b, c],
+                [along, -2 * along, along],
+                2 * self.stiff * (bend @ axis),
+                2 * self.stiff,
+            )
 
         a, b = self.pairs
         side = points[b] - points[a]
-        length = np.linalg.norm(side, axis=1)
-        lack = np.maximum(0, self.near - length)
-        total += self.APART * (lack**2).sum()
-        pull = (-2 * self.APART * lack / length)[:, None] * side
-        moved += [(b, pull), (a, -pull)]
+        close = (side**2).sum(1) < self.near**2
+        a, b = a[close], b[close]
+        along, length = _unit(side[close])
+        lack = self.near[close] - length
+        total += self.apart * (lack**2).sum()
+        add([a, b], [-along, along], -2 * self.apart * lack, 2 * self.apart)
 
-        number = np.concatenate([number for number, _ in moved])
-        force = np.concatenate([force for _, force in moved])
-        slopes = [np.bincount(number, force[:, axis], self.size) for axis in (0, 1)]
-        return float(total), np.stack(slopes, 1), np.asarray(turned, float)
+        a, b, slot = self.gateways
+        along, length = _unit(points[b] - points[a])
+        aside = np.stack([-along[:, 1], along[:, 0]], 1) / length[:, None]
+        off = np.arctan2(along[:, 1], along[:, 0]) - norths[a] + 2 * np.pi * slot / self.slots
+        total += self.COMPASS * (1 - np.cos(off)).sum()
+        stiff = self.COMPASS * np.maximum(np.cos(off), self.LEAST)
+        add([a, b], [-aside, aside], self.COMPASS * np.sin(off), stiff)
+        columns, ways, pull, stiff = terms.pop()
+        columns = np.concatenate([columns, 2 * self.size + a[None]])
+        terms.append((columns, np.vstack([ways, -np.ones(len(a))]), pull, stiff))
+        return float(total), terms
 
 
-def _descend(energy: Callable[[Points], tuple[float, Points]], x: Points, steps: int) -> Points:
-    """A point of less energy, by L-BFGS (Nocedal 1980). Unlike that of a library its steps
-    only ever go to where the energy is finite, so that what was never folded is not."""
-    value, slope = energy(x)
-    past: deque[tuple[Points, Points]] = deque(maxlen=MEMORY)
+def _unit(side: Points) -> tuple[Points, Points]:
+    """Directions, and lengths."""
+    length = np.linalg.norm(side, axis=1)
+    return side / length[:, None], length
+
+
+def _descend(shape: _Shape, x: Points, free: Numbers, steps: int) -> Points:
+    """Numbers of less energy, by Newton's method, the free ones changed. The curvature of each
+    term is taken for no less than nothing; steps go only to where the energy is finite, so that
+    what was never folded is not."""
+    number = np.full(len(x), -1)
+    number[free] = np.arange(len(free))
+    value, terms = shape(x)
     idle = 0
     for _ in range(steps):
-        step = -slope
-        factors = []
-        for s, y in reversed(past):
-            factors.append((s @ step) / (s @ y))
-            step = step - factors[-1] * y
-        if past:
-            s, y = past[-1]
-            step = step * (s @ y) / (y @ y)
-        for s, y in past:
-            step = step + (factors.pop() - (y @ step) / (s @ y)) * s
-        if not past or step @ slope >= 0:
-            past.clear()
-            step = -slope * 0.01 / np.abs(slope).max()
-        length = 1.0
-        while True:
-            new, new_slope = energy(x + length * step)
-            if new <= value + 1e-4 * length * (step @ slope):
-                break
+        slope, curvature = _system(terms, number, len(free))
+        step = np.zeros(len(x))
+        step[free] = linalg.splu(curvature, "MMD_AT_PLUS_A", options={"SymmetricMode": True}).solve(
+            -slope
+        )
+        gain = slope @ step[free]
+        length = min(1.0, 0.9 * shape.reach(x, step))
+        while (new := shape(x + length * step))[0] > value + 1e-4 * length * gain:
             length /= 2
-            if length < 1e-12:
+            if length < 1e-10:
                 return x
-        s, y = length * step, new_slope - slope
-        if s @ y > 1e-12:
-            past.append((s, y))
-        idle = 0 if value - new > 1e-6 * (1 + abs(value)) else idle + 1
-        x, value, slope = x + s, new, new_slope
-        if idle > 3:
+        idle = idle + 1 if value - new[0] < 1e-4 * (1 + abs(value)) else 0
+        x = x + length * step
+        value, terms = new
+        if idle > 9:
             break
     return x
+
+
+def _system(terms: list[Term], number: Numbers, size: int) -> tuple[Points, Any]:
+    """The slope of the energy by the numbers, and its curvature, a matrix."""
+    pull, stiff = (np.concatenate([term[n] for term in terms]) for n in (2, 3))
+    ends = np.cumsum([len(term[2]) for term in terms])
+    rows = [
+        np.tile(np.arange(end - len(p), end), len(of))
+        for end, (of, _, p, _) in zip(ends, terms, strict=True)
+    ]
+    row = np.concatenate(rows)
+    column = np.concatenate([number[of].ravel() for of, *_ in terms])
+    entry = np.concatenate([ways.ravel() for _, ways, *_ in terms])
+    kept = column >= 0
+    by = sparse.csr_matrix((entry[kept], (row[kept], column[kept])), (len(pull), size))
+    curvature = by.T @ sparse.diags(stiff) @ by + LITTLE * sparse.identity(size)
+    return by.T @ pull, curvature.tocsc()
