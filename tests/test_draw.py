@@ -74,9 +74,19 @@ def lines_of(scene):
     return lines, drawn
 
 
-def clockwise(lines, place):
-    """The slots of a place, in the clockwise order of the lines that leave it."""
-    outs = {slot: line[1] - line[0] for (p, slot), line in lines.items() if p == place}
+def leaves(line, radius):
+    """Where a line leaves a circle round its beginning, from the middle; read along the line in
+    small steps."""
+    fine = np.concatenate([np.linspace(a, b, 500) for a, b in pairwise(line - line[0])])
+    outside = np.linalg.norm(fine, axis=1) >= radius
+    assert outside.any(), "a line is hidden by its place"
+    return fine[outside.argmax()]
+
+
+def clockwise(lines, drawn, place):
+    """The slots of a place, in the clockwise order of the lines where they leave its circle."""
+    radius = np.ptp(outline(drawn[f"place-{place}"])[:, 0]) / 2
+    outs = {slot: leaves(line, radius) for (p, slot), line in lines.items() if p == place}
     order = sorted(outs, key=lambda slot: -np.arctan2(*outs[slot][::-1]))
     least = order.index(min(order))
     return order[least:] + order[:least]
@@ -92,8 +102,8 @@ def ticks_and_dots(world, lines, drawn):
         assert len(outs) == len(star)
         assert np.allclose(np.linalg.norm(points[::2] - centre, axis=1), RADIUS, atol=0.01)
         for slot, out in zip(sorted(star), outs, strict=True):
-            way = lines[place, slot][1] - lines[place, slot][0]
-            assert np.allclose(out / np.linalg.norm(out), way / np.linalg.norm(way), atol=1e-3)
+            way = leaves(lines[place, slot], RADIUS)
+            assert np.allclose(out / np.linalg.norm(out), way / np.linalg.norm(way), atol=0.02)
         turns = -np.arctan2(*outs.T[::-1])
         around = (turns - turns[0]) % (2 * np.pi)
         assert (np.diff(around) > 0).all()
@@ -102,10 +112,15 @@ def ticks_and_dots(world, lines, drawn):
             assert np.allclose(middle(drawn[f"zero-{place}"]), points[0], atol=0.01)
 
 
+def outline(group):
+    """The points of a path, y upwards."""
+    path = next(iter(group)).get("d")
+    return np.array(re.findall(f"({NUMBER}) ({NUMBER})", path), float) * [1, -1]
+
+
 def middle(group):
     """Of a circle."""
-    path = next(iter(group)).get("d")
-    points = np.array(re.findall(f"({NUMBER}) ({NUMBER})", path), float) * [1, -1]
+    points = outline(group)
     return (points.min(0) + points.max(0)) / 2
 
 
@@ -151,7 +166,10 @@ def check(scene):
     assert f"genus {world.genus()}" in scene.title or world.genus() == 0
     for place, star in world.stars.items():
         assert f"place-{place}" in drawn
-        assert clockwise(lines, place) == sorted(star)
+        assert clockwise(lines, drawn, place) == sorted(star)
+    for one, other in combinations(world.stars, 2):
+        apart = middle(drawn[f"place-{one}"]) - middle(drawn[f"place-{other}"])
+        assert np.linalg.norm(apart) > 2 * RADIUS, "two places lie on each other"
     for gateway, end in world.links.items():
         assert np.allclose(lines[gateway], lines[end][::-1])
         assert np.allclose(lines[gateway][-1], lines[end][0])

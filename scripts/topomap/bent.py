@@ -26,9 +26,21 @@ Term = tuple[Numbers, Points, Points, Points]
 STUB = 0.36  # the length of a stub, where a link is of length 1
 BENDS = 5  # inner points of a link that is not straight
 PIECE, LOOP = 0.7, 1.6  # the lengths of a link's piece up to a crossing, and of a loop
-# How much triangles resist, and how much places and lines keep apart, one after the other.
-STAGES = (1.0, 1.0), (0.1, 4.0), (0.01, 10.0), (0.002, 40.0)
-STEPS = 200  # of the descent, at most, with each weight
+# How much triangles resist, and how much places and lines keep apart, one after the other; what is
+# stuck where triangles are flat comes free when they resist more again.
+STAGES = (
+    (1.0, 1.0),
+    (0.1, 4.0),
+    (0.01, 10.0),
+    (1.0, 4.0),
+    (0.1, 10.0),
+    (0.01, 40.0),
+    (0.1, 40.0),
+    (0.01, 40.0),
+    (0.002, 40.0),
+)
+AGAIN = 4  # times at most, while a stub is squeezed
+STEPS = 120  # of the descent, at most, with each weight
 LITTLE = 1e-9  # stiffness that leaves none without any
 
 
@@ -41,9 +53,13 @@ def bent(world: TopologicalMap, crossings: list[Place], steps: int) -> dict[Gate
     x = np.concatenate([points.ravel(), shape.norths(points)])
     rim = np.concatenate([2 * np.array(mesh.rim), 2 * np.array(mesh.rim) + 1])
     free = np.setdiff1d(np.arange(len(x)), rim)
-    for shape.weight, shape.apart in STAGES:
-        x = _descend(shape, x, free, steps)
-    points = x[: 2 * mesh.size].reshape(-1, 2)
+    for again in range(AGAIN):
+        for shape.weight, shape.apart in STAGES[3 * (again > 0) :]:
+            x = _descend(shape, x, free, steps)
+        points = x[: 2 * mesh.size].reshape(-1, 2)
+        a, b = shape.sides[:, shape.firm > 1]
+        if (np.linalg.norm(points[b] - points[a], axis=1) > STUB / 2).all():
+            break
     lines = {}
     for start in world.gateways():
         if start[0] not in crossings:
