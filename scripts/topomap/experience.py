@@ -98,6 +98,8 @@ def read(path: str | Path) -> Experience:
 
 def parse(text: str, source: str) -> Experience:
     """The experience in the text of an instance; ``source`` names it in errors."""
+    if text.lstrip()[:1] in ("{", "["):
+        raise InputError(f"{source}: the facts of an instance are wanted, not JSON or a rule")
     slots: set[int] = set()
     views: dict[int, set[int]] = defaultdict(set)
     turns: dict[int, set[int]] = defaultdict(set)

@@ -8,6 +8,7 @@ import shlex
 import time
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from itertools import product
 from pathlib import Path
 from typing import Any
 
@@ -19,6 +20,7 @@ from topomap.commands import exit_status
 from topomap.errors import InputError, printable, say
 from topomap.experience import LARGEST, Experience
 from topomap.files import output
+from topomap.pictures import ready
 from topomap.replay import MOST, SHOWN, Step, fate, in_force, replay
 from topomap.scenes import MOST_PLACES, Scene
 from topomap.solver import INTERRUPT, MEMORY, PARTS, PRUNING, Cube, Query, Stopped, Watch
@@ -130,21 +132,24 @@ class Exploration:
             self.shapes[at] = drawn
 
     def _draw(self) -> Iterator[None]:
-        """Drawings of the best maps, and small ones, from the last step back: that of a map
-        which grows to another one that is shown is a part of the other's."""
+        """Drawings of the best maps, and small ones, from the last step back, of each step the
+        first, then of each the second: that of a map which grows to another one that is shown
+        is a part of the other's."""
+        ready()
         for scene in self.best[: self.most]:
             self.watch.title(f"picture of map {scene.number}")
             if len(scene.world.stars) <= MOST_PLACES:
                 ahead = _ahead(scene.world.links, scene.at)
                 self._keep(tuple(scene.at), svg.drawing(scene.world, ahead))
                 yield
-        later: list[Cube] = []
-        for number in range(self.seen.steps, -1, -1):
-            self.watch.title(f"pictures of step {number} of {self.seen.steps}")
-            for at in self.steps[number].shown:
+        last = self.seen.steps
+        for rank, number in product(range(SHOWN), range(last, -1, -1)):
+            self.watch.title(f"pictures of step {number} of {last}")
+            for at in self.steps[number].shown[rank : rank + 1]:
                 world = self.seen.map_of(at)
                 if at in self.shapes or len(world.stars) > SMALL:
                     continue
+                later = self.steps[number + 1].shown if number < last else []
                 grown = (self.shapes.get(more) for more in later if more[: number + 1] == at)
                 parts = (part_of(whole, world) for whole in grown if whole)
                 drawn = next((part for part in parts if part), None)
@@ -152,7 +157,6 @@ class Exploration:
                     drawn = svg.drawing(world, _ahead(world.links, at), small=True)
                 self._keep(at, drawn)
                 yield
-            later = self.steps[number].shown
 
 
 def _ahead(links: Any, at: Sequence[Gateway]) -> Gateway | None:
