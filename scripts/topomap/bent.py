@@ -39,7 +39,8 @@ STAGES = (
     (0.01, 40.0),
     (0.002, 40.0),
 )
-AGAIN = 4  # times at most, while a stub is squeezed
+ANEW = (100.0, 0.0), (10.0, 0.0)  # before these, if the drawing is not legible
+AGAIN = 2  # times at most
 STEPS = 120  # of the descent, at most, with each weight
 LITTLE = 1e-9  # stiffness that leaves none without any
 
@@ -53,13 +54,12 @@ def bent(world: TopologicalMap, crossings: list[Place], steps: int) -> dict[Gate
     x = np.concatenate([points.ravel(), shape.norths(points)])
     rim = np.concatenate([2 * np.array(mesh.rim), 2 * np.array(mesh.rim) + 1])
     free = np.setdiff1d(np.arange(len(x)), rim)
-    for again in range(AGAIN):
-        for shape.weight, shape.apart in STAGES[3 * (again > 0) :]:
+    for again in range(AGAIN + 1):
+        for shape.weight, shape.apart in ANEW * (again > 0) + STAGES:
             x = _descend(shape, x, free, steps)
-        points = x[: 2 * mesh.size].reshape(-1, 2)
-        a, b = shape.sides[:, shape.firm > 1]
-        if (np.linalg.norm(points[b] - points[a], axis=1) > STUB / 2).all():
+        if shape.legible(x):
             break
+    points = x[: 2 * mesh.size].reshape(-1, 2)
     lines = {}
     for start in world.gateways():
         if start[0] not in crossings:
@@ -266,6 +266,14 @@ class _Shape:
         turned = np.arctan2(out[:, 1], out[:, 0]) + 2 * np.pi * slot / self.slots
         x, y = (np.bincount(place, f(turned), self.places) for f in (np.cos, np.sin))
         return np.arctan2(y, x)
+
+    def legible(self, x: Points) -> bool:
+        """Whether no stub is squeezed, and no places lie on each other."""
+        points = x[: 2 * self.size].reshape(-1, 2)
+        a, b = self.sides[:, self.firm > 1]
+        c, d = self.pairs[:, self.pairs[1] < self.places]
+        stubs, apart = (np.linalg.norm(points[q] - points[p], axis=1) for p, q in ((a, b), (c, d)))
+        return bool((stubs > STUB / 2).all() and (apart > STUB).all())
 
     def reach(self, x: Points, step: Points) -> float:
         """How much of a step goes until a triangle is folded."""

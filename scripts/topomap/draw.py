@@ -217,14 +217,8 @@ def _draw_place(
 
 
 def _out(line: Points) -> Points:
-    """The direction of the point where a line leaves the circle of its place."""
-    far = np.linalg.norm(line - line[0], axis=1)
-    k = int(np.argmax(far > RADIUS)) or len(line) - 1
-    a, way = line[k - 1] - line[0], line[k] - line[k - 1]
-    # |a + t way| = RADIUS
-    square, half, rest = way @ way, a @ way, a @ a - RADIUS**2
-    t = (-half + np.sqrt(half**2 - square * rest)) / square
-    return np.asarray((a + t * way) / np.linalg.norm(a + t * way))
+    """The direction in which a line leaves."""
+    return np.asarray((line[1] - line[0]) / np.linalg.norm(line[1] - line[0]))
 
 
 def _draw_signs(
