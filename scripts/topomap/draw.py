@@ -3,10 +3,8 @@
 import re
 import warnings
 from collections.abc import Sequence
-from dataclasses import replace
 from functools import cache
 from math import atan2, cos, sin
-from pathlib import PurePath
 from typing import IO, Any
 
 import matplotlib as mpl
@@ -25,7 +23,6 @@ from matplotlib.transforms import Bbox
 
 from topomap import words
 from topomap.bent import Points
-from topomap.errors import printable
 from topomap.layout import Layout, layout
 from topomap.scenes import Scene
 from topomap.svg import gaps
@@ -95,12 +92,10 @@ def draw(axes: Axes, scene: Scene, faces: bool = True, route: bool = True) -> La
 
 
 def title(scene: Scene, laid: Layout) -> str:
-    """What the map is; an instance by the stem of its file."""
-    name, kind = PurePath(printable(scene.name)).stem, printable(scene.kind)
-    told = replace(scene, name=words.short(name, 100), kind=words.short(kind, 60)).title
+    """What the map is, and how many links cross others."""
     count = len(laid.crossing)
     others = "1 link crosses others" if count == 1 else f"{count} links cross others"
-    return f"{told}, {others}" if count else told
+    return f"{scene.title}, {others}" if count else scene.title
 
 
 @cache

@@ -4,6 +4,7 @@ from collections import Counter, defaultdict
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
+from pathlib import PurePath
 from typing import Any
 
 import networkx as nx
@@ -14,6 +15,7 @@ from topomap.experience import LARGEST, MOST_SLOTS, Experience, parse
 from topomap.files import text
 from topomap.solver import MEMORY, Found, Query, Stopped, Watch
 from topomap.topology import Gateway, TopologicalMap
+from topomap.words import short
 
 MOST_PLACES = 1000  # in a picture
 
@@ -37,7 +39,7 @@ class Scene:
 
     @property
     def title(self) -> str:
-        """What the map is, in two lines."""
+        """What the map is, in two lines; an instance by the stem of its file."""
         world = self.world
         which = f"map {self.number} of {self.many}{' found' * (not self.whole)}"
         if self.whole and self.many == 1:
@@ -49,9 +51,9 @@ class Scene:
             _number(len(world.paths()), "path"),
             "planar" if genus == 0 else f"genus {genus}",
         ]
-        title = (
-            self.caption or f"{printable(self.name)}: {which}{f', {self.kind}' * bool(self.kind)}"
-        )
+        name = short(PurePath(printable(self.name)).stem, 100)
+        kind = short(printable(self.kind), 60)
+        title = self.caption or f"{name}: {which}{f', {kind}' * bool(kind)}"
         return f"{title}\n{', '.join(sizes)}"
 
     def steps(self) -> dict[Gateway, list[int]]:
