@@ -519,7 +519,7 @@ def test_parts_of_maps_that_are_there_already_are_refused(tmp_path, part):
 )
 def test_a_title_says_the_only_map_where_there_is_no_other(tmp_path, change, title):
     done = asked_of_maps(tmp_path, document(change))
-    assert done.stdout.split("\n")[0] == f"{tmp_path / 'maps.json'}: {title}"
+    assert done.stdout.split("\n")[0] == f"maps: {title}"
 
 
 def test_an_imported_map_is_not_said_to_be_the_only_one(tmp_path):
