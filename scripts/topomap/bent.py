@@ -24,6 +24,8 @@ Numbers = NDArray[np.int64]
 # grows with each of them, the term's first derivative by it, and its second, or nothing if less.
 Term = tuple[Numbers, Points, Points, Points]
 STUB = 0.36  # the length of a stub, where a link is of length 1
+FIRST = 0.22  # the length of a link's piece at a place
+LEAVING = 0.16  # what that must be, and of a stub, to be seen outside the place's circle
 BENDS = 5  # inner points of a link that is not straight
 PIECE, LOOP = 0.7, 1.6  # the lengths of a link's piece up to a crossing, and of a loop
 # How much triangles resist, and how much places and lines keep apart, one after the other; what is
@@ -209,7 +211,7 @@ class _Shape:
     STRETCH, SQUEEZE, BEND, LOOP, COMPASS = 0.5, 2.0, 27.0, 0.3, 3.0
     # Places to each other, a crossing to either, a place to a line, and two lines.
     NEAR = 0.9, 0.6, 0.4, 0.25
-    STUBS = 10.0  # times as firm as links
+    FIRM = 10.0  # times as firm as other pieces: where lines leave
     LEAST = 0.1  # of the compass's stiffness, where a gateway is far from its direction
 
     def __init__(self, mesh: _Mesh) -> None:
@@ -221,11 +223,16 @@ class _Shape:
         bends: list[tuple[int, ...]] = []
         sides: list[tuple[float, ...]]
         sides = [(*mesh.lines[gateway][:2], STUB) for gateway in world.pending()]
+        lines = [line for line in mesh.lines.values() if len(line) > 2]
+        lines.sort(key=lambda line: line[0] >= self.places)  # those that leave crossings last
+        sides += [(*line[:2], FIRST) for line in lines]
+        firm = sum(side[0] < self.places for side in sides)
         for gateway, _ in world.edges():
             line = mesh.lines[gateway]
             weak = line[0] == line[-1]  # a loop cannot but bend
             whole = LOOP if weak else 1.0 if len(line) == BENDS + 2 else PIECE
-            sides += [(a, b, whole / (len(line) - 1)) for a, b in pairwise(line)]
+            rest = (whole - 2 * FIRST) / (len(line) - 3)
+            sides += [(a, b, rest) for a, b in pairwise(line[1:-1])]
             bends += [(*three, weak) for three in zip(line, line[1:], line[2:], strict=False)]
         for place in mesh.crossings:
             for slot in sorted(world.stars[place])[:2]:
@@ -233,7 +240,7 @@ class _Shape:
                 bends.append((a[1], a[0], b[1], False))
         self.sides = np.array([side[:2] for side in sides], int).reshape(-1, 2).T
         self.lengths = np.array([side[2] for side in sides])
-        self.firm = np.where(np.arange(len(sides)) < len(world.pending()), self.STUBS, 1.0)
+        self.firm = np.where(np.arange(len(sides)) < firm, self.FIRM, 1.0)
         self.bends = np.array([bend[:3] for bend in bends], int).reshape(-1, 3).T
         self.stiff = np.array([self.LOOP if bend[3] else self.BEND for bend in bends])
         real = [gateway for gateway in world.gateways() if gateway[0] not in mesh.crossings]
@@ -268,12 +275,14 @@ class _Shape:
         return np.arctan2(y, x)
 
     def legible(self, x: Points) -> bool:
-        """Whether no stub is squeezed, and no places lie on each other."""
+        """Whether all lines leave their places, and no places lie on each other."""
         points = x[: 2 * self.size].reshape(-1, 2)
         a, b = self.sides[:, self.firm > 1]
         c, d = self.pairs[:, self.pairs[1] < self.places]
-        stubs, apart = (np.linalg.norm(points[q] - points[p], axis=1) for p, q in ((a, b), (c, d)))
-        return bool((stubs > STUB / 2).all() and (apart > STUB).all())
+        leaving, apart = (
+            np.linalg.norm(points[q] - points[p], axis=1) for p, q in ((a, b), (c, d))
+        )
+        return bool((leaving > LEAVING).all() and (apart > STUB).all())
 
     def reach(self, x: Points, step: Points) -> float:
         """How much of a step goes until a triangle is folded."""
