@@ -780,6 +780,12 @@ def test_the_page_is_as_wide_as_the_window(shown, width, place):
           !e.closest("table, pre, svg") && right(e) > root.clientWidth + 1);
         return [root.scrollWidth, root.clientWidth, out.map((e) => e.outerHTML.slice(0, 80))];"""
     )
+    smallest = shown.execute_script(
+        """return Math.min(...[...document.querySelectorAll(".hypothesis svg, .plot, .best svg")]
+        .filter((svg) => svg.getClientRects().length).map((svg) =>
+          9.5 * svg.getBoundingClientRect().width / svg.viewBox.baseVal.width));"""
+    )
+    assert smallest > 8  # the height of the smallest letters
     assert wide <= window
     assert window > width - 20
     assert out == []
@@ -824,7 +830,7 @@ def test_the_focus_is_seen(shown):
     from selenium.webdriver import ActionChains, Keys
 
     seen = set()
-    for _ in range(16):
+    for _ in range(17):
         ActionChains(shown).send_keys(Keys.TAB).perform()
         tag, style, outline = shown.execute_script(
             "const e = document.activeElement, s = getComputedStyle(e);"
