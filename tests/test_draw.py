@@ -27,7 +27,7 @@ from topomap.pictures import FORMATS
 from topomap.planarize import lacking, planar_part, routed
 from topomap.scenes import Scene
 from topomap.solver import Query, Watch
-from topomap.topology import TopologicalMap, label
+from topomap.topology import TopologicalMap, gid, label
 from worlds import WORLDS, random_experience
 
 QUIET = Watch(quiet=True)
@@ -196,7 +196,10 @@ def check(scene):
     assert len(faces) == max(0, count - 1)
     assert faces <= numbers
     if scene.at:
-        assert f"agent-{draw.gid(scene.at[-1])}" in drawn
+        line, tip = lines[scene.at[-1]], middle(drawn[f"agent-{gid(scene.at[-1])}"])
+        way, out = line[1] - line[0], tip - line[0]
+        assert RADIUS < np.linalg.norm(out) < 3 * RADIUS
+        assert way @ out > 0.95 * np.linalg.norm(way) * np.linalg.norm(out)
     return lines
 
 
@@ -313,6 +316,36 @@ def test_faces_are_round_their_numbers():
             x, y = outline.T
             area = (x * np.roll(y, -1) - np.roll(x, -1) * y).sum() / 2
             assert (area >= -1e-9) if index == laid.outer else (area < 0)
+        (axes,) = draw.picture([scene]).axes
+        at = {text.get_gid(): text.get_position() for text in axes.texts}
+        shades = {patch.get_gid(): patch.get_path() for patch in axes.patches}
+        for index in range(1, len(laid.faces) + 1):
+            spot = at[f"number-{index}"]
+            round_it = [n for n in shades if "face-" in n and shades[n].contains_point(spot)]
+            assert round_it == [f"face-{index}"] * (index - 1 != laid.outer)
+
+
+@pytest.mark.parametrize("number", range(6))
+def test_steps_are_on_the_right_of_their_ways(number):
+    scene = some_map(number)
+    world = scene.world
+    laid = layout(world, world.links[scene.at[1]])
+    (axes,) = draw.picture([scene]).axes
+    at = {t.get_text(): t.get_position() for t in axes.texts if t.get_color() == draw.STEP}
+    ways = scene.steps()
+    assert sorted(step for steps in ways.values() for step in steps) == list(
+        range(1, len(scene.at))
+    )
+    assert len(at) == len(ways)
+    for gateway, steps in ways.items():
+        assert world.links[gateway] in [scene.at[step] for step in steps]
+        told = " ".join(map(str, steps[:3])) + " …" * (len(steps) > 3)
+        line = np.concatenate([np.linspace(a, b, 200) for a, b in pairwise(laid.lines[gateway])])
+        away = np.linalg.norm(line - at[told], axis=1)
+        n = int(np.clip(away.argmin(), 1, len(line) - 2))
+        (x, y), (u, v) = line[n + 1] - line[n - 1], at[told] - line[n]
+        assert away.min() < 0.15
+        assert x * v - y * u < 0
 
 
 def test_the_same_bytes_for_the_same_map(tmp_path):
@@ -478,6 +511,15 @@ def test_bad_calls_are_refused(arguments, fault):
     done = run("topomap", "draw", *arguments)
     assert (done.returncode, done.stdout, len(done.stderr.splitlines())) == (2, "", 1)
     assert fault in done.stderr
+
+
+def test_of_an_answer_that_is_partial_no_map_is_said_not_to_be(tmp_path):
+    """There may be more maps than were found in time."""
+    large = ROOT / "instances/manhattan-tour40-signs30.lp"
+    picture = tmp_path / "map.svg"
+    done = run("topomap", "draw", large, "--map", "99", "--timeout", "0.5", "-o", picture)
+    assert (done.returncode, done.stderr) == (3, f"{large}: partial: timeout\n")
+    assert not picture.exists()
 
 
 def test_no_map_and_no_time_leave_no_picture(tmp_path):

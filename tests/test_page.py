@@ -17,6 +17,7 @@ from itertools import combinations, product
 import oracle
 import pytest
 from conftest import BIN, ROOT, answers, lacking, run
+from matplotlib.path import Path as Outline
 from topomap import cli, svg, words
 from topomap.agreement import Agreement
 from topomap.environment import grid
@@ -135,7 +136,7 @@ def test_words_of_turns():
     world = grid(3, 3).map
     place, arrival = world.links[(1, 0), 1]
     assert (place, arrival) == ((1, 1), 3)
-    told = {world.slots and slot: words.direction((slot - arrival) % 4, 4) for slot in range(4)}
+    told = {slot: words.direction((slot - arrival) % 4, 4) for slot in range(4)}
     assert told == {0: "left", 1: "straight on", 2: "right", 3: "back"}
     assert words.direction(1, 6) == "left (1 slot clockwise)"
     assert words.direction(4, 6) == "right (4 slots clockwise)"
@@ -384,6 +385,29 @@ def test_pictures_tell_the_gateways():
     lowest = max(y for _, y in drawn.places.values())
     (y,) = [y for n, (_, _, (_, y)) in enumerate(drawn.faces) if not drawn.faces[n][1]]
     assert lowest + svg.RADIUS < y < top + high
+    for _, outline, point in drawn.faces:
+        around = [Outline(line).contains_point(point) for _, line, _ in drawn.faces if line]
+        assert sum(around) == bool(outline)
+        assert not outline or Outline(outline).contains_point(point)
+    steps, told = scene.steps(), re.findall(r'class="along" x="(.*?)" y="(.*?)">([^<]*)<', text)
+    assert len(told) == len(scene.world.edges())
+    for (a, b), (x, y, named) in zip(scene.world.edges(), told, strict=True):
+        assert named == " ".join(map(str, sorted(steps.get(a, []) + steps.get(b, []))))
+        begin, end, here = drawn.lines[a][0], drawn.lines[a][-1], (int(x), int(y))
+        assert math.dist(begin, here) + math.dist(here, end) < math.dist(begin, end) + 1
+    glyph = re.findall(f"({number}) ({number})", svg.agent(drawn, at[-1]))
+    x, y = (sum(map(float, ends)) / 3 for ends in zip(*glyph, strict=True))
+    (a, b), (u, v) = drawn.lines[at[-1]]
+    assert svg.RADIUS < math.dist((x, y), (a, b)) < 2.5 * svg.RADIUS
+    assert abs(math.atan2(y - b, x - a) - math.atan2(v - b, u - a)) < 0.1
+
+
+def test_the_agent_is_seen_where_a_line_begins_twice():
+    """Coordinates are whole numbers: the first points of a line may be one."""
+    drawn = svg.Drawing({0: (0, 0)}, {(0, 0): [(0, 0), (0, 0), (60, 0)]}, [], (0, 0, 1, 1))
+    glyph = re.findall(r"(-?\d+) (-?\d+)", svg.agent(drawn, (0, 0)))
+    assert len(set(glyph)) == 3
+    assert all(int(x) > svg.RADIUS for x, _ in glyph)
 
 
 def test_agreement_of_maps():
@@ -756,6 +780,12 @@ def test_the_page_is_as_wide_as_the_window(shown, width, place):
           !e.closest("table, pre, svg") && right(e) > root.clientWidth + 1);
         return [root.scrollWidth, root.clientWidth, out.map((e) => e.outerHTML.slice(0, 80))];"""
     )
+    smallest = shown.execute_script(
+        """return Math.min(...[...document.querySelectorAll(".hypothesis svg, .plot, .best svg")]
+        .filter((svg) => svg.getClientRects().length).map((svg) =>
+          9.5 * svg.getBoundingClientRect().width / svg.viewBox.baseVal.width));"""
+    )
+    assert smallest > 8  # the height of the smallest letters
     assert wide <= window
     assert window > width - 20
     assert out == []
@@ -800,7 +830,7 @@ def test_the_focus_is_seen(shown):
     from selenium.webdriver import ActionChains, Keys
 
     seen = set()
-    for _ in range(16):
+    for _ in range(17):
         ActionChains(shown).send_keys(Keys.TAB).perform()
         tag, style, outline = shown.execute_script(
             "const e = document.activeElement, s = getComputedStyle(e);"

@@ -25,7 +25,7 @@ from topomap.replay import MOST, SHOWN, Step, fate, in_force, replay
 from topomap.scenes import MOST_PLACES, Scene
 from topomap.solver import INTERRUPT, MEMORY, PARTS, PRUNING, Cube, Query, Stopped, Watch
 from topomap.svg import Drawing, part_of
-from topomap.topology import Gateway
+from topomap.topology import Gateway, gid
 
 FOLDER = Path(__file__).parent
 SMALL = 100  # places in a small picture, at most
@@ -379,7 +379,7 @@ def _map(scene: Scene, drawn: Drawing | None, agreed: Agreement) -> dict[str, An
         content = svg.body(scene, drawn, False, apart, strange) + svg.agent(drawn, scene.at[-1])
         picture = svg.picture(name, drawn.frame, content, "map large", LARGER)
     paths = [
-        ", ".join(map(_label, path)) if len(path) > 1 else f"{_label(path[0])} (untravelled)"
+        ", ".join(map(gid, path)) if len(path) > 1 else f"{gid(path[0])} (untravelled)"
         for path in world.paths()
     ]
     return {
@@ -388,8 +388,7 @@ def _map(scene: Scene, drawn: Drawing | None, agreed: Agreement) -> dict[str, An
         "sizes": _sizes(scene),
         "numbered": bool(drawn and drawn.faces),
         "links": [
-            (_label(out), _label(end), words.listed(along), having)
-            for out, end, along, having in links
+            (gid(out), gid(end), words.listed(along), having) for out, end, along, having in links
         ],
         "apart": len(apart) // 2,
         "places": [
@@ -404,9 +403,5 @@ def _map(scene: Scene, drawn: Drawing | None, agreed: Agreement) -> dict[str, An
             for place, star in world.stars.items()
         ],
         "paths": paths,
-        "faces": [", ".join(map(_label, face)) for face in world.faces()],
+        "faces": [", ".join(map(gid, face)) for face in world.faces()],
     }
-
-
-def _label(gateway: Gateway) -> str:
-    return f"{gateway[0]}.{gateway[1]}"

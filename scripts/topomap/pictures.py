@@ -7,7 +7,7 @@ import shutil
 import sys
 from pathlib import Path
 
-from topomap import exports, scenes
+from topomap import exports, scenes, words
 from topomap.commands import exit_status
 from topomap.errors import DONE, INTERRUPTED, InputError, say
 from topomap.files import output
@@ -91,14 +91,15 @@ def _scene(args: argparse.Namespace) -> tuple[Scene | None, int]:
     parts = frozenset(part for part in PARTS if getattr(args, part, False))
     with Watch(args.timeout) as watch:
         found, fault = scenes.read(args.file, Query(parts, args.bound, args.horizon), watch)
+    number = args.map or 1
     if fault:
         say(f"{args.file}: partial: {fault}")
     elif not found:
         say(f"{args.file}: no map is consistent with it")
-    number = args.map or 1
-    if found and number > len(found):
-        raise InputError(f"{args.file}: it has {len(found)} maps, there is no map {number}")
-    return (found[number - 1] if found else None), exit_status(fault, bool(found))
+    elif number > len(found):
+        many = words.number(len(found), "map")
+        raise InputError(f"{args.file}: it has {many}, there is no map {number}")
+    return (found[number - 1] if number <= len(found) else None), exit_status(fault, bool(found))
 
 
 def figures(args: argparse.Namespace) -> int:

@@ -340,9 +340,7 @@ def _at(line: Line, share: float) -> Point:
 
 def agent(drawn: Drawing, dstate: Gateway) -> str:
     """The agent at the gateway where it stands."""
-    (x, y), (u, v) = drawn.lines[dstate][:2]
-    length = math.dist((x, y), (u, v)) or 1.0
-    a, b = (u - x) / length, (v - y) / length
+    (x, y), (a, b) = drawn.lines[dstate][0], _way(drawn.lines[dstate])
     foot = x + 1.2 * RADIUS * a, y + 1.2 * RADIUS * b
     corners = ((12, 0), (0, 6), (0, -6))
     points = [(round(foot[0] + f * a - s * b), round(foot[1] + f * b + s * a)) for f, s in corners]
