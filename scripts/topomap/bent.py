@@ -42,7 +42,7 @@ STAGES = (
     (0.002, 40.0),
 )
 ANEW = (100.0, 0.0), (10.0, 0.0)  # before these, if the drawing is not legible
-AGAIN = 2  # times at most
+AGAIN = 2  # times at most, and not in fewer steps
 STEPS = 120  # of the descent, at most, with each weight
 LITTLE = 1e-9  # stiffness that leaves none without any
 
@@ -56,7 +56,7 @@ def bent(world: TopologicalMap, crossings: list[Place], steps: int) -> dict[Gate
     x = np.concatenate([points.ravel(), shape.norths(points)])
     rim = np.concatenate([2 * np.array(mesh.rim), 2 * np.array(mesh.rim) + 1])
     free = np.setdiff1d(np.arange(len(x)), rim)
-    for again in range(AGAIN + 1):
+    for again in range(AGAIN + 1 if steps >= STEPS else 1):
         for shape.weight, shape.apart in ANEW * (again > 0) + STAGES:
             x = _descend(shape, x, free, steps)
         if shape.legible(x):

@@ -223,7 +223,9 @@ def _environment(kinds: Any, kind: str, common: Parser, help: str, example: str)
     return added
 
 
-def _add_asked(command: Parser, parts: Iterable[str], horizon: bool = True) -> None:
+def _add_asked(
+    command: Parser, parts: Iterable[str], horizon: bool = True, limit: str = "stop after S seconds"
+) -> None:
     """Which maps are asked for, and how long."""
     add = command.add_argument
     for part in parts:
@@ -231,7 +233,7 @@ def _add_asked(command: Parser, parts: Iterable[str], horizon: bool = True) -> N
     add("--bound", type=_number(int, 1), metavar="B", help="at most B places")
     if horizon:
         add("--horizon", type=_number(int, 0), metavar="T", help="cut the experience after step T")
-    add("--timeout", type=_number(float, 0.001), metavar="S", help="stop after S seconds")
+    add("--timeout", type=_number(float, 0.001), metavar="S", help=limit)
 
 
 def _add_query(command: Parser, parts: Iterable[str], horizon: bool = True) -> None:
@@ -452,7 +454,7 @@ def _add_scene(command: Parser) -> None:
         "is asked for below; or maps, from topomap solve --json",
     )
     add("--map", type=_number(int, 1), metavar="N", help="the N-th of the maps (default: 1)")
-    _add_asked(command, PRUNING)
+    _add_asked(command, PRUNING, limit="stop the search for maps after S seconds; then draw")
 
 
 def _add_draw(group: Any) -> None:
@@ -542,7 +544,7 @@ def _add_export(group: Any) -> None:
         """\
   topomap export instances/grid-4x4-snake.lp --map 2 --format graphml -o map.graphml
   topomap export maps.json --format dot | neato -n2 -Tsvg -o map.svg
-  topomap export maps.json --format clingraph -o map.lp""",
+  topomap export maps.json --format clingraph | clingraph --engine=neato --out=render""",
     )
     _add_scene(command)
     command.add_argument("--format", required=True, choices=tuple(exports.FORMATS))

@@ -6,6 +6,7 @@ gateways leave in their order, clockwise as the agent turns. If all links can be
 the directions of one compass, they are.
 """
 
+import random
 from collections.abc import Mapping
 from dataclasses import dataclass
 
@@ -16,6 +17,7 @@ from topomap.planarize import lacking, planar_part, routed
 from topomap.topology import Gateway, Place, TopologicalMap
 
 SHORTEST = 0.4  # link in a drawing by the compass
+TRIES, LENGTHS = 150, (1, 1, 1, 2, 3)  # of other drawings, and of links in them
 
 
 @dataclass(frozen=True)
@@ -101,28 +103,40 @@ def _direction(angle: float, slots: int) -> Points:
 
 
 def _by_compass(world: TopologicalMap) -> dict[Gateway, Points] | None:
-    """Lines in the directions of the compass, as near as can be to length 1; None if they
-    would bend, become short, meet or cross."""
+    """Lines in the directions of the compass, as near as can be to length 1, or if they meet or
+    become short, to some other lengths; None if they do so by all that are tried."""
     north, fits = compass(world)
     if not fits:
         return None
     number = {place: index for index, place in enumerate(world.stars)}
-    rows, sides = [np.eye(2, 2 * len(number))[n] for n in (0, 1)], [0.0, 0.0]
-    for (p, s), (q, _) in world.edges():
+    rows = [np.eye(2, 2 * len(number))[n] for n in (0, 1)]
+    edges = world.edges()
+    for (p, s), (q, _) in edges:
         along = _direction(north[p] + s, world.slots)
-        for axis, length in (along, 1.0), (100 * along[::-1] * [-1, 1], 0.0):
+        for axis in along, 100 * along[::-1] * [-1, 1]:
             row = np.zeros((len(number), 2))
             row[number[q]] += axis
             row[number[p]] -= axis
             rows.append(row.ravel())
-            sides.append(length)
-    found = np.linalg.lstsq(np.array(rows), np.array(sides), rcond=None)[0].reshape(-1, 2)
+    lengths = np.zeros((len(rows), 1 + TRIES))
+    draw = random.Random(0)
+    some = sorted(([draw.choice(LENGTHS) for _ in edges] for _ in range(TRIES)), key=sum)
+    lengths[2::2] = np.array([[1] * len(edges), *some]).T
+    tried = np.linalg.lstsq(np.array(rows), lengths, rcond=None)[0].T.reshape(1 + TRIES, -1, 2)
+    drawn = (_lines(world, north, dict(zip(number, found, strict=True))) for found in tried)
+    return next(filter(None, drawn), None)
+
+
+def _lines(
+    world: TopologicalMap, north: Mapping[Place, int], found: Mapping[Place, Points]
+) -> dict[Gateway, Points] | None:
+    """The lines between places, and stubs; None if one is aslant or short, or meets others."""
     lines = {}
     for p, s in world.gateways():
-        along, here = _direction(north[p] + s, world.slots), found[number[p]]
+        along, here = _direction(north[p] + s, world.slots), found[p]
         end = here + STUB * along
         if (p, s) in world.links:
-            end = found[number[world.links[p, s][0]]]
+            end = found[world.links[p, s][0]]
             if (end - here) @ along < SHORTEST or np.linalg.norm(
                 (end - here) - (end - here) @ along * along
             ) > 0.01 * SHORTEST:

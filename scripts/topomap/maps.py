@@ -51,8 +51,13 @@ class Document:
 def read(path: str, most: int = MOST_BYTES) -> list[Document]:
     """The maps in a file of ``most`` bytes at most. Raises InputError, one line, where it
     holds something else."""
+    return parse(text(path, most), path)
+
+
+def parse(content: str, path: str) -> list[Document]:
+    """The maps in a text; ``path`` names it in errors."""
     try:
-        data = json.loads(text(path, most))
+        data = json.loads(content)
     except (ValueError, RecursionError):
         raise InputError(
             f"{path}: not a JSON text, as topomap solve --json and clingo --outf=2 write it"

@@ -8,7 +8,7 @@ import shlex
 import time
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from itertools import product
+from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
@@ -79,7 +79,7 @@ class Exploration:
         self.best, fault = scenes.best(self.seen, self.name, self.query, self.watch)
         if fault:
             self.faults.append(f"the best maps: {fault}")
-        self.watch.deadline = now + seconds
+        self.watch.deadline = now + seconds / 2
         ats = [tuple(scene.at) for scene in self.best]
         self.steps, fault = replay(self.seen, self.query, ats, self.watch)
         if fault:
@@ -132,18 +132,27 @@ class Exploration:
             self.shapes[at] = drawn
 
     def _draw(self) -> Iterator[None]:
-        """Drawings of the best maps, and small ones, from the last step back, of each step the
-        first, then of each the second: that of a map which grows to another one that is shown
-        is a part of the other's."""
+        """Drawings of the best maps, and small ones: of the first of each, then of the others."""
         ready()
-        for scene in self.best[: self.most]:
+        yield from self._draw_best(self.best[: min(1, self.most)])
+        yield from self._draw_shown(0)
+        yield from self._draw_best(self.best[1 : self.most])
+        for rank in range(1, SHOWN):
+            yield from self._draw_shown(rank)
+
+    def _draw_best(self, some: list[Scene]) -> Iterator[None]:
+        for scene in some:
             self.watch.title(f"picture of map {scene.number}")
             if len(scene.world.stars) <= MOST_PLACES:
                 ahead = _ahead(scene.world.links, scene.at)
                 self._keep(tuple(scene.at), svg.drawing(scene.world, ahead))
                 yield
+
+    def _draw_shown(self, rank: int) -> Iterator[None]:
+        """Of each step one, from the last step back: that of a map which grows to another one
+        that is shown is a part of the other's."""
         last = self.seen.steps
-        for rank, number in product(range(SHOWN), range(last, -1, -1)):
+        for number in range(last, -1, -1):
             self.watch.title(f"pictures of step {number} of {last}")
             for at in self.steps[number].shown[rank : rank + 1]:
                 world = self.seen.map_of(at)
@@ -192,6 +201,7 @@ def _page(args: argparse.Namespace, made: list[Exploration]) -> str:
             "topomap": __version__,
             "clingo": clingo.__version__,
             "Python": platform.python_version(),
+            **{name: version(name) for name in ("networkx", "numpy", "scipy")},
         },
         most=MOST,
         shown=SHOWN,

@@ -78,7 +78,9 @@ def read(path: str, query: Query, watch: Watch) -> tuple[list[Scene], str | None
     if content.lstrip()[:1] in ("{", "["):
         if query != Query(frozenset()):
             raise InputError(f"{path}: maps, and no instance: parts, bound, horizon are of none")
-        return [scene for document in maps.read(path) for scene in of_document(document)], None
+        return [
+            scene for document in maps.parse(content, path) for scene in of_document(document)
+        ], None
     return best(parse(content, path), path, query, watch)
 
 

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 UNIT = 60  # the middle one of the links
 RADIUS = 11  # of a place
 APART, NARROW = 30, 15  # places, and in degrees gateways, if they are to be told
-FEW, MANY = (25, 200), (200,)  # steps of the descent, in a small picture and a large one
+FEW, MANY = (25, 119), (120,)  # steps of the descent, in a small picture and a large one
 STUB = 22
 MARGIN = 20
 LETTER, HIGH, GAP = 7.2, 13, 4  # of a landmark: a letter, a line, and what is left round it
