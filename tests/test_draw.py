@@ -281,6 +281,18 @@ def test_a_grid_looks_like_a_grid(rows, columns):
     assert np.allclose(np.ptp(ends, axis=0), length * np.array([columns - 1, rows - 1]), atol=1e-2)
 
 
+def test_links_are_longer_where_else_they_would_meet():
+    """A spiral: the fifth side of four slots would lie on the first."""
+    ways = [1, 2, 3, 0, 1, 2]
+    links = {(n, way): (n + 1, (way + 2) % 4) for n, way in enumerate(ways)}
+    links |= {end: out for out, end in links.items()}
+    stars = {place: frozenset(s for p, s in links if p == place) for place in range(len(ways) + 1)}
+    world = TopologicalMap(4, stars, links)
+    lines = check(Scene(world, [(0, 1)], "spiral"))
+    assert {len(line) for line in lines.values()} == {2}
+    assert len({round(np.linalg.norm(line[-1] - line[0])) for line in lines.values()}) > 1
+
+
 @pytest.mark.parametrize("kind", ["hexagons", "triangles"])
 def test_lattices_are_even(kind):
     made = instance(lattice(kind, 2, 2), "tour")

@@ -124,7 +124,7 @@ def _by_compass(world: TopologicalMap) -> dict[Gateway, Points] | None:
     lengths[2::2] = np.array([[1] * len(edges), *some]).T
     tried = np.linalg.lstsq(np.array(rows), lengths, rcond=None)[0].T.reshape(1 + TRIES, -1, 2)
     drawn = (_lines(world, north, dict(zip(number, found, strict=True))) for found in tried)
-    return next(filter(None, drawn), None)
+    return next((lines for lines in drawn if lines is not None), None)
 
 
 def _lines(
