@@ -556,10 +556,16 @@ def test_no_map_and_no_step(tmp_path):
     status, page = report(tmp_path / "page.html", ROOT / GRID, "--bound", "3", "--horizon", "9")
     assert status == 1
     assert "There is no map." in page.text
+    counts = page.tables[f"Hypotheses after each step of {ROOT / GRID}"][1:]
+    ended = next(step for step, any_map, _ in counts if any_map == "0")
+    told = " ".join(page.text.split())
+    assert f"<strong>No hypothesis is left after step {ended}.</strong> Of those" in told
+    assert "before 1 ends there: there would be too many places." in told
     refused = page.tables[f"Arrivals tried and refused at each step of {ROOT / GRID}"]
     assert "ended: bound" in refused[1]
     status, page = report(tmp_path / "page.html", ROOT / GRID, "--horizon", "0")
     assert status == 0
+    assert "No hypothesis is left" not in page.text
     assert "1 map found: best so far" in page.text
 
 

@@ -278,6 +278,7 @@ def _about(args: argparse.Namespace, number: int, about: Exploration) -> dict[st
             (step, about.steps[step - 1].alive, about.steps[step]) for step in range(1, last + 1)
         ],
         "maps": maps,
+        "dead": next((step for step in range(1, last + 1) if about.steps[step].alive == 0), None),
         "found": len(about.best),
         "kind": about.best[0].kind if about.best else "",
         "agreed": agreed,
