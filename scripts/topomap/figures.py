@@ -225,7 +225,7 @@ def manhattan(tours: list[Experience], watch: Watch) -> Figure:
         found = best(tour, watch, *parts)
         at = whole.at[: tour.steps + 1]
         truth = Scene(tours[-1].cut(tour.steps).map_of(tuple(at)), at, "")
-        which = f"one of {len(found)} best so far"
+        which = f"one of {len(found)} best{' planar ones' * bool(parts)} so far"
         panels.append(titled(found[0], f"after {tour.steps} steps: {which}"))
         panels.append(titled(truth, f"after {tour.steps} steps: the truth"))
     return draw.picture([*panels[:2], real, *panels[2:]], columns=3)
