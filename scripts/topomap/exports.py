@@ -26,12 +26,12 @@ if TYPE_CHECKING:
 Node = tuple[Place | Gateway, dict[str, str]]
 Edge = tuple[Place | Gateway, Place | Gateway, dict[str, str]]
 LISTS = {"at", "gateways", "landmarks", "ends", "steps", "back"}  # attributes that are lists
-POINTS = 72  # that a link of length 1 takes, in DOT
+POINTS, RADIUS = 72, 0.15  # that a link of length 1 takes, in DOT; of a place, in such lengths
 COMMON = {
     "graph": {"inputscale": "72"},  # what says that positions are in points
     "graph_nodes": {
         "shape": "circle",
-        "width": "0.3",
+        "width": f"{2 * RADIUS:g}",
         "fixedsize": "true",
         "style": "filled",
         "fillcolor": "white",
@@ -169,11 +169,11 @@ def _drawing(scene: Scene) -> tuple[list[Node], list[Edge]]:
         travelled = zip(("steps", "back"), (steps.get(a, ()), steps.get(b, ())), strict=True)
         told = slots | {key: " ".join(map(str, those)) for key, those in travelled if those}
         told |= {"style": "dashed"} if a in crossing else {}
-        told["pos"] = _spline(laid.lines[a])
+        told["pos"] = _spline(laid.lines[a], 2)
         edges.append((a[0], b[0], told))
     for a in world.pending():
         nodes.append((a, {"pos": f"{_point(laid.lines[a][-1])}!", **STUB}))
-        edges.append((a[0], a, {"taillabel": str(a[1]), "pos": _spline(laid.lines[a])}))
+        edges.append((a[0], a, {"taillabel": str(a[1]), "pos": _spline(laid.lines[a], 1)}))
     return nodes, edges
 
 
@@ -182,8 +182,13 @@ def _point(point: "Points") -> str:
     return ",".join(f"{round(float(number) * POINTS, 2) + 0:g}" for number in point)
 
 
-def _spline(line: "Points") -> str:
-    """A line as a spline: each of its sides is one, with control points at its thirds."""
+def _spline(line: "Points", ends: int) -> str:
+    """A line as a spline: each of its sides is one, with control points at its thirds. It begins,
+    and if it has two ``ends`` it ends, at the circle of a place."""
+    line = line.copy()
+    for here, there in ((0, 1), (-1, -2))[:ends]:
+        way = line[there] - line[here]
+        line[here] += way * min(0.5, RADIUS / float((way @ way) ** 0.5))
     parts = (_point(a + (b - a) * k / 3) for a, b in pairwise(line) for k in (1, 2, 3))
     return " ".join([_point(line[0]), *parts])
 
