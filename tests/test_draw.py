@@ -559,3 +559,12 @@ def test_interrupted_figures_say_so(tmp_path):
         _, told = process.communicate(timeout=60)
     assert (process.returncode, told.splitlines()[-1]) == (130, f"{tmp_path}: partial: interrupted")
     assert {path.suffix for path in tmp_path.iterdir()} == {".svg"}
+
+
+def test_maps_by_a_pipe(topomap, tmp_path):
+    maps = tmp_path / "maps.json"
+    assert not topomap("solve", GRID, "--optimal", "--json", "-o", maps).returncode
+    pictures = [tmp_path / name for name in ("a.svg", "b.svg")]
+    for source, text, picture in zip((maps, "-"), (None, maps.read_text()), pictures, strict=True):
+        assert not topomap("draw", source, "-o", picture, input=text).returncode
+    assert pictures[0].read_bytes() == pictures[1].read_bytes()
