@@ -20,8 +20,8 @@ from topomap.topology import Gateway, Place, TopologicalMap
 
 Points = NDArray[np.float64]
 Numbers = NDArray[np.int64]
-# Terms of an energy, each a function of one number that some numbers make up: which ones, how it
-# grows with each of them, the term's first derivative by it, and its second, or nothing if less.
+# Terms f(y) of an energy, where y depends on some of the numbers x: which these are, dy/dx of each
+# of them, f'(y), and f''(y) or 0 if that is negative. A column for each of the terms of a kind.
 Term = tuple[Numbers, Points, Points, Points]
 STUB = 0.36  # the length of a stub, where a link is of length 1
 FIRST = 0.22  # the length of a link's piece at a place

@@ -53,8 +53,7 @@ def draw(axes: Axes, scene: Scene, faces: bool = True, route: bool = True) -> La
     the faces are not drawn: those of the planar part are not the map's."""
     world = scene.world
     at = scene.at
-    ahead = world.links[at[1]] if len(at) > 1 else None
-    laid = layout(world, ahead)
+    laid = layout(world, scene.ahead)
     for gateway, line in laid.lines.items():
         _draw_line(axes, world, laid, gateway, line)
     for place, point in laid.places.items():

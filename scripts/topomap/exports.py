@@ -156,7 +156,7 @@ def _drawing(scene: Scene) -> tuple[list[Node], list[Edge]]:
     from topomap.layout import layout  # scipy takes its time
 
     world = scene.world
-    laid = layout(world, world.links[scene.at[1]] if len(scene.at) > 1 else None)
+    laid = layout(world, scene.ahead)
     steps = scene.steps()
     nodes: list[Node] = []
     edges: list[Edge] = []

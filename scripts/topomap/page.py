@@ -6,7 +6,7 @@ import hashlib
 import platform
 import shlex
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import replace
 from importlib.metadata import version
 from pathlib import Path
@@ -25,7 +25,7 @@ from topomap.replay import MOST, SHOWN, Step, fate, in_force, replay
 from topomap.scenes import MOST_PLACES, Scene
 from topomap.solver import INTERRUPT, MEMORY, PARTS, PRUNING, Cube, Query, Stopped, Watch
 from topomap.svg import Drawing, part_of
-from topomap.topology import Gateway, gid
+from topomap.topology import gid
 
 FOLDER = Path(__file__).parent
 SMALL = 100  # places in a small picture, at most
@@ -144,8 +144,7 @@ class Exploration:
         for scene in some:
             self.watch.title(f"picture of map {scene.number}")
             if len(scene.world.stars) <= MOST_PLACES:
-                ahead = _ahead(scene.world.links, scene.at)
-                self._keep(tuple(scene.at), svg.drawing(scene.world, ahead))
+                self._keep(tuple(scene.at), svg.drawing(scene.world, scene.ahead))
                 yield
 
     def _draw_shown(self, rank: int) -> Iterator[None]:
@@ -163,13 +162,9 @@ class Exploration:
                 parts = (part_of(whole, world) for whole in grown if whole)
                 drawn = next((part for part in parts if part), None)
                 if drawn is None:
-                    drawn = svg.drawing(world, _ahead(world.links, at), small=True)
+                    drawn = svg.drawing(world, Scene(world, at, self.name).ahead, small=True)
                 self._keep(at, drawn)
                 yield
-
-
-def _ahead(links: Any, at: Sequence[Gateway]) -> Gateway | None:
-    return links[at[1]] if len(at) > 1 else None
 
 
 def _page(args: argparse.Namespace, made: list[Exploration]) -> str:

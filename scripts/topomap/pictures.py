@@ -15,6 +15,7 @@ from topomap.scenes import Scene
 from topomap.solver import PARTS, Query, Stopped, Watch
 
 FORMATS = ("svg", "png", "pdf")
+LEAST, MOST = 20, 100  # columns of a terminal
 MEMORY = 300 << 20  # what numpy, scipy and matplotlib map when they are loaded, and some more
 
 
@@ -81,9 +82,6 @@ def import_(args: argparse.Namespace) -> int:
     with output(args.output) as file:
         file.write(content)
     return DONE
-
-
-LEAST, MOST = 20, 100  # columns of a terminal
 
 
 def _scene(args: argparse.Namespace) -> tuple[Scene | None, int]:

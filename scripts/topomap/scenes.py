@@ -56,6 +56,11 @@ class Scene:
         title = self.caption or f"{name}: {which}{f', {kind}' * bool(kind)}"
         return f"{title}\n{', '.join(sizes)}"
 
+    @property
+    def ahead(self) -> Gateway | None:
+        """The gateway that is left first, if one is: it leads to the right of a picture."""
+        return self.world.links[self.at[1]] if len(self.at) > 1 else None
+
     def steps(self) -> dict[Gateway, list[int]]:
         """The steps that leave by each gateway."""
         found: dict[Gateway, list[int]] = defaultdict(list)

@@ -80,12 +80,11 @@ def text(scene: Scene, width: int, coloured: bool = False) -> str:
     """A map in a terminal of that many columns. Maps of lines are as wide as they need; maps of
     dots fit, unless numbers would fall onto each other: then they are up to four times as wide."""
     world = scene.world
-    ahead = world.links[scene.at[1]] if len(scene.at) > 1 else None
-    laid = straight(world, ahead)
+    laid = straight(world, scene.ahead)
     letters = _letters(laid) if laid else {}
     canvas = boxes(scene, laid, letters) if laid else None
     if laid is None or canvas is None:
-        laid, letters = layout(world, ahead), {}
+        laid, letters = layout(world, scene.ahead), {}
         canvas = dots(scene, laid, width)
     told = [*scene.title.rsplit("\n", 1), "", *canvas.lines(coloured), ""]
     for line in words(scene, laid, letters):
