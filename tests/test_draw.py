@@ -230,8 +230,8 @@ def test_some_of_these_maps_are_of_higher_genus():
 
 @pytest.mark.parametrize("number", range(10))
 def test_a_link_crosses_as_few_as_can_be(number):
-    """Without what is in between the routed map is the map; and the first further link goes by
-    a shortest way from face to face."""
+    """Without what is in between the routed map is the map; and each further link goes by a
+    shortest way from face to face, those before it led."""
     world = some_map(number).world
     part = planar_part(world)
     further = lacking(part, world)
@@ -244,16 +244,19 @@ def test_a_link_crosses_as_few_as_can_be(number):
             end = whole.links[whole.opposite(end)]
         links |= {gateway: end} if end else {}
     assert links == world.links
-    for out, end in further[:1]:
-        face = {gateway: n for n, walk in enumerate(part.faces()) for gateway in walk}
-        over = nx.Graph((face[a], face[b]) for a, b in part.links.items())
+    for number, (out, end) in enumerate(further):
+        before, crossed = routed(part, further[:number])
+        face = {gateway: n for n, walk in enumerate(before.faces()) for gateway in walk}
+        over = nx.Graph((face[a], face[b]) for a, b in before.links.items())
 
-        def beside(place, slot, part=part, face=face):
-            back = [(slot - n) % part.slots for n in range(part.slots)]
+        def beside(place, slot, face=face):
+            back = [(slot - n) % world.slots for n in range(world.slots)]
             return next(face[place, s] for s in back if (place, s) in face)
 
         least = nx.shortest_path_length(over, beside(*out), beside(*end))
-        assert len(routed(part, [(out, end)])[1]) == least > 0
+        more = len(routed(part, further[: number + 1])[1]) - len(crossed)
+        assert more == least
+        assert least > 0 or number
 
 
 @pytest.mark.parametrize("name", WORLDS)

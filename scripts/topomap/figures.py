@@ -105,7 +105,8 @@ def figure3(watch: Watch) -> Figure:
             turn = 90 if abs(across[0]) < abs(across[1]) else 0
             style = {"fontsize": 7, "ha": "center", "va": "center", "rotation": turn}
             left.text(x, y, text, color=colour, **style)
-        laid = draw.draw(right, titled(scene, "(b) the walks round its three faces"), False, False)
+        walks = f"(b) the walks round its {len(laid.faces)} faces"
+        laid = draw.draw(right, titled(scene, walks), False, False)
         low = np.min(list(laid.places.values()), axis=0)
         for number, face in enumerate(laid.faces):
             colour = WALKS[number % len(WALKS)]
