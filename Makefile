@@ -3,9 +3,11 @@
 # make mutate     change each rule in turn, and write docs/mutation.md (JOBS)
 # make lint       check style and types
 # make instances  make the batch that instances/batch.txt lists (try make -j2 instances)
-# make bench      time the encodings and the search, write docs/benchmark.md (half an hour;
+# make bench      time the encodings and the search, write docs/benchmark.md, then what steps of
+#                 follow and what questions take, docs/online.md, docs/asking.md (half an hour;
 #                 BENCH: options, such as BENCH='--only 8x8', BENCH=--quick, BENCH=--help)
 # make figures    draw the pictures of the README again, docs/figures/
+# make simulate   let robots explore twenty worlds, docs/simulations.json (three minutes)
 # make beyond     count what is beyond the paper's table, docs/beyond.json (an hour)
 # make clean      remove what make made
 # make committed  make the committed instances again (MAPS: folder of the real maps)
@@ -19,7 +21,8 @@ BATCH   := build/instances
 MAKERS  := $(addprefix scripts/topomap/,environment.py experience.py generate.py network.py \
              route.py topology.py)
 
-.PHONY: all table instances batch test test-long mutate lint figures bench beyond clean committed
+.PHONY: all table instances batch test test-long mutate lint figures bench beyond simulate clean \
+        committed
 .DELETE_ON_ERROR:
 
 all: instances table
@@ -63,6 +66,8 @@ MANHATTAN := network $(MAPS)/manhattan.graphml --slots 4 --north 29 --route tour
 
 bench: $(SETUP)
 	cd tests && ../$(BIN)/python -m bench --networks $(abspath $(MAPS)) $(BENCH)
+	cd tests && ../$(BIN)/python -m bench.online
+	cd tests && ../$(BIN)/python -m bench.asking
 
 figures: $(SETUP)
 	$(BIN)/topomap figures --directory docs/figures
@@ -70,10 +75,17 @@ figures: $(SETUP)
 beyond: $(SETUP)
 	$(BIN)/topomap table --beyond --resume --output docs/beyond.json
 
+simulate: $(SETUP)
+	$(BIN)/topomap simulate list instances/worlds.txt --json --output docs/simulations.json
+
 committed: $(SETUP)
 	$(GENERATE) grid 3 3 --route snake -o instances/
 	$(GENERATE) grid 3 4 --route ESSENNESSWWWNEEENWWWS --name grid-3x4-paper -o instances/
 	$(GENERATE) grid 4 4 --route snake -o instances/
+	$(GENERATE) grid 3 3 --route EESWWSEENNWSSWNNSSEN --name grid-3x3-misread \
+	  | sed -e 's/^turn(13,.*/& view(13,2)./' \
+	    -e 's/^% made by.*/&\n% and one gateway imagined: view(13,2) is added to what is seen there/' \
+	  > instances/grid-3x3-misread.lp
 	$(GENERATE) $(MANHATTAN) --steps 20 -o instances/
 	$(GENERATE) $(MANHATTAN) --steps 40 --signs 0.3 -o instances/
 	$(GENERATE) $(MANHATTAN) --signs 0.3 -o instances/

@@ -92,16 +92,24 @@ def costs(parts, facts, *arguments, encoding="plain"):
     return dict(found)
 
 
+def plain(experience):
+    """An experience as the oracle wants it."""
+    return (
+        experience.slots,
+        experience.views,
+        (None, *experience.turns),
+        experience.landmarks,
+        {(step, "put") for step in experience.drops}
+        | {(step, "took") for step in experience.picks}
+        | {(step, "saw") for step in experience.markers},
+    )
+
+
 class Truth:
     """What the independent search says of an experience."""
 
     def __init__(self, experience):
-        self.experience = (
-            experience.slots,
-            experience.views,
-            (None, *experience.turns),
-            experience.landmarks,
-        )
+        self.experience = plain(experience)
         self.levels = tree(self.experience)
         self.final = {at: Hypothesis(self.experience, at) for at in self.levels[-1]}
 

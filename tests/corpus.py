@@ -6,18 +6,26 @@ load it.
 """
 
 import random
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
-from functools import cache
+from functools import cache, partial
+from itertools import combinations
 
 import phased
+import walks
+from asked import FIGURES, PROPERTIES, RELATIONS, relation
 from conftest import ENCODINGS, PARTS, Truth
 from flawed import DEMANDS, INSTANCES, by_hand, drawn
+from misread import brute, corrupted, expected
+from oracle import Hypothesis
+from relaxed import Assignment, assignments, reasons
 from topomap.check import STEP_RULES, by_definition, by_rules
-from topomap.environment import EAST, WEST, grid
-from topomap.experience import Experience, explore
+from topomap.environment import EAST, WEST, grid, world
+from topomap.experience import MARKER, Experience, explore
+from topomap.explore import Standing
 from topomap.route import snake
 from topomap.solver import FORMS
+from topomap.topology import TopologicalMap
 from worlds import WORLDS, of_grid, random_experience, walked
 
 
@@ -35,6 +43,8 @@ def marked(experience, *steps):
 
 
 CORRIDOR = seen("0", "0: 0 2", "2: 0", "0: 0 2")
+CORNERS = seen("0 1", "0: 0 1", "1: 0 3")
+FIRST, LAST = frozenset([0]), frozenset([2])
 EXPERIENCES = {
     "corridor": CORRIDOR,
     "same": marked(CORRIDOR, 1, 3),
@@ -43,7 +53,12 @@ EXPERIENCES = {
     "branch": seen("0 1", "0: 0"),
     "end": seen("0 2", "0: 0"),
     "loop": seen("0 1", "0: 0 3"),
-    "corners": seen("0 1", "0: 0 1", "1: 0 3"),
+    "corners": CORNERS,
+    "marker": replace(CORNERS, drops=FIRST, markers=LAST),
+    "no marker": replace(CORNERS, drops=FIRST),
+    "taken": replace(CORNERS, drops=FIRST, picks=LAST),
+    # No step arrives where it left.
+    "marker at once": replace(seen("0 1", "0: 0 3"), drops=FIRST, markers=frozenset([1])),
     "mirrored": seen("0 1", "0: 0 1", "1: 0 1"),
     "ahead": seen("0 1 2 3", "0: 0 2", "2: 0 1 2 3"),
     "square": seen("0 3", "0: 0 3", "3: 0 3", "3: 0 3", "3: 0 1"),
@@ -235,12 +250,18 @@ Answers = frozenset[tuple[tuple[int, ...], frozenset[str]]]
 class Query:
     """Encodings, by their names under encodings/, loaded with what they include, with facts
     and with arguments of clingo; and the answers, each its cost and the atoms that it shows.
-    With --opt-mode=optN, these are the optimal ones."""
+    With --opt-mode=optN, these are the optimal ones.
+
+    With ``steps``, they are grounded one after the other, each with its facts and the program
+    parts ``parts``, and then it is asked. A number among them takes that step back; what is
+    not of a step is only added."""
 
     files: tuple[str, ...]
     facts: str
     answers: Answers
     arguments: tuple[str, ...] = ()
+    steps: tuple[str, ...] = ()
+    parts: tuple[str, ...] = ()
 
 
 def shown(*atoms: str) -> Answers:
@@ -257,6 +278,17 @@ def theory() -> Iterator[Query]:
         horizon = max(0, experience.steps - after)
         cut = ("-c", f"horizon={horizon}")
         yield from hypotheses(experience.facts(), cut, Truth(experience.cut(horizon)))
+
+
+def marker() -> Iterator[Query]:
+    """Experiences with a marker."""
+    for seed in range(30):
+        experience = random_experience(random.Random(f"marker {seed}"), 9, marker=True)
+        yield from hypotheses(experience.facts(), (), Truth(experience))
+    for name in ("marker", "no marker", "taken", "marker at once"):
+        for horizon in range(EXPERIENCES[name].steps + 1):
+            cut, how = EXPERIENCES[name].cut(horizon), ("-c", f"horizon={horizon}")
+            yield from hypotheses(EXPERIENCES[name].facts(), how, Truth(cut))
 
 
 def hypotheses(facts: str, arguments: tuple[str, ...], truth: Truth) -> Iterator[Query]:
@@ -303,6 +335,71 @@ def hypotheses(facts: str, arguments: tuple[str, ...], truth: Truth) -> Iterator
     yield from least(("boundary", "minimal"), fewest, truth.having("boundary"))
     yield from least(("genus",), genus, truth.final)
     yield from least(("genus", "minimal"), both, truth.final)
+
+
+def misread() -> Iterator[Query]:
+    """Experiences with wrong views, with what brute force says of them."""
+    drawn = [(corrupted(random.Random(f"misread {seed}"), 3), 1) for seed in range(16)]
+    drawn += [(corrupted(random.Random(f"misread {seed}"), 2), 2) for seed in range(2)]
+    named = [(EXPERIENCES[name], 1) for name in ("same", "lost", "added")]
+    nothing = Experience(4, (frozenset(),), (), (frozenset(),))
+    for seen, most in [*drawn, *named, (CORNERS, 0), (nothing, 1)]:
+        ways = list(brute(seen, most))
+        for parts in ((), ("closed",), ("minimal",), ("genus", "minimal")):
+            every = {
+                cost: [key for key, other in found.items() if other == cost]
+                for found in [expected(ways, parts)]
+                for cost in found.values()
+            }
+            said = {cost: {wrong_atoms(*key) for key in keys} for cost, keys in every.items()}
+            files = ("topomap", "noise", *parts)
+            answers = frozenset((cost, atoms) for cost in said for atoms in said[cost])
+            how = () if most == 1 else ("-c", f"noise={most}")
+            yield Query(files, seen.facts(), answers, (*how, "--opt-mode=enum,999"))
+            best = min(said, default=())
+            answers = frozenset((best, atoms) for atoms in said.get(best, ()))
+            yield Query(files, seen.facts(), answers, (*how, "--opt-mode=optN"))
+        if ways and len(ways[0][1].final) < 20 and most == 1:
+            yield figures(seen, ways)
+
+
+def figures(seen: Experience, ways) -> Query:
+    """How many paths and pending gateways there are where views are wrong."""
+    facts = seen.facts() + "ask(number(path,0..20)). ask(number(pending,0..20))."
+    answers = set()
+    for (at, wrong), cost in expected(ways, ()).items():
+        map_ = dict(ways)[wrong].final[at]
+        told = {f"holds(number(path,{FIGURES['paths'](map_)}))"}
+        told.add(f"holds(number(pending,{FIGURES['pending'](map_)}))")
+        answers.add((cost, wrong_atoms(at, wrong) | told))
+    arguments = ("--opt-mode=enum,999",)
+    return Query(("topomap", "noise", "query"), facts, frozenset(answers), arguments)
+
+
+def wrong_atoms(at, misread) -> frozenset[str]:
+    """What is shown of a hypothesis with misreadings."""
+    atoms = {f"at({t},{p},{s})" for t, (p, s) in enumerate(at)}
+    atoms |= {f"wrong({t})" for t, _ in misread}
+    kinds = ((t, "gateway" if isinstance(what, int) else "landmark", what) for t, what in misread)
+    return frozenset(atoms | {f"misread({t},{kind}({what}))" for t, kind, what in kinds})
+
+
+def given_up() -> Iterator[Query]:
+    """All dstates by step, with what they break; and those that break least."""
+    for name in ("corners", "mirrored", "ahead", "branch", "loop", "lost", "added"):
+        experience = EXPERIENCES[name].cut(3)
+        found = []
+        for at in assignments(experience):
+            one = Assignment(experience, at)
+            broken = [f"waived({reason})" for reason in reasons(experience) if one.broken(reason)]
+            atoms = frozenset([*broken, *(f"at({t},{p},{s})" for t, (p, s) in enumerate(at))])
+            found.append((len(broken), atoms))
+        every = frozenset(((), atoms) for _, atoms in found)
+        least = min(number for number, _ in found)
+        best = frozenset(((number,), atoms) for number, atoms in found if number == least)
+        files = ("topomap", "explain")
+        yield Query(files, experience.facts(), every, ("--opt-mode=ignore",))
+        yield Query(files, experience.facts(), best, ("--opt-mode=optN",))
 
 
 def phases() -> Iterator[Query]:
@@ -393,9 +490,11 @@ def begun(facts: str, experience: Experience, pairs: phased.Pairs, horizon: int)
 
 def sizes() -> list[Query]:
     """What the size of the fast encodings is taken by: each experience with all the parts, one
-    in five of what is asked of the phases, and a large exploration of which it is known what
-    visits are new."""
-    files = tuple(f"fast/{part}" for part in ("topomap", "bound", *PARTS, "genus", "minimal"))
+    in five of what is asked of the phases, one in seven of what is asked step by step, and a
+    large exploration of which it is known what visits are new."""
+    files = tuple(
+        f"fast/{part}" for part in ("topomap", "bound", "query", *PARTS, "genus", "minimal")
+    )
     whole = [Query(files, seen.facts(), frozenset()) for seen in (EXPERIENCES | WORLDS).values()]
     phases = [query for query in queries() if query.files[0].startswith("fast/phases/")]
     made = grid(5, 5)
@@ -405,7 +504,8 @@ def sizes() -> list[Query]:
     known = phased.text(fact for fact in found if fact[0] in ("new", "old"))
     pairs = "".join(f"{atom}. " for atom in phased.Pairs(experience).shown())
     large = experience.facts() + pairs + known
-    return [*whole, *phases[::5], Query(("fast/phases/topomap", "fast/planar"), large, frozenset())]
+    plane = Query(("fast/phases/topomap", "fast/planar"), large, frozenset())
+    return [*whole, *phases[::5], plane, *[*following()][::7]]
 
 
 def check() -> Iterator[Query]:
@@ -443,7 +543,324 @@ def faults() -> Iterator[Query]:
         yield Query(("input",), facts, shown(*(f"error({error})" for error in errors.split())))
 
 
-SUITES = (theory, phases, squares, ends, check, demands, faults)
+COMPARED = {"number": int.__eq__, "least": int.__ge__, "most": int.__le__}
+NAMED = {"places": "place", "paths": "path", "links": "link"}
+
+
+def asked() -> Iterator[Query]:
+    """Statements, and of each hypothesis those that hold in it."""
+    draws = [random_experience(random.Random(f"asked {seed}"), 9) for seed in range(60)]
+    for experience in [*(EXPERIENCES | WORLDS).values(), *draws]:
+        truth = Truth(experience)
+        draw = random.Random(experience.facts())
+        for _ in range(3 if len(truth.final) < 100 else 0):
+            yield from _asked(draw, experience, truth)
+    yield from statements(CORRIDOR, Truth(CORRIDOR), {})
+
+
+def _asked(draw: random.Random, experience: Experience, truth: Truth) -> Iterator[Query]:
+    """Some statements."""
+    tests = {}
+    for kind in draw.choices([*RELATIONS], k=8):
+        numbers = relation(draw, experience, kind)
+        tests[f"{kind}({','.join(map(str, numbers))})"] = partial(_so, RELATIONS[kind], numbers)
+    for figure in draw.sample([*FIGURES], 2):
+        for how in draw.choices([*COMPARED], k=3):
+            number = draw.randint(0, experience.steps + 2)
+            term = f"{how}({NAMED.get(figure, figure)},{number})"
+            tests[term] = partial(_compared, FIGURES[figure], COMPARED[how], number)
+    for name in draw.sample([*PROPERTIES], 1):
+        tests[name] = PROPERTIES[name]
+    yield from statements(experience, truth, tests)
+    yield from statements(experience, truth, {"boundary": PROPERTIES["boundary"]})
+
+
+def statements(
+    experience: Experience, truth: Truth, tests: dict[str, Callable[[Hypothesis], bool]]
+) -> Iterator[Query]:
+    """Statements, each with what it says of a hypothesis, asked of each form of the encodings."""
+    answers = set()
+    for at, h in truth.final.items():
+        atoms = {f"at({t},{p},{s})" for t, (p, s) in enumerate(at)}
+        atoms |= {f"holds({term})" for term, test in tests.items() if test(h)}
+        answers.add(((), frozenset(atoms)))
+    facts = experience.facts() + "".join(f"ask({term})." for term in tests)
+    for folder in FORMS.values():
+        under = folder.relative_to(ENCODINGS)
+        yield Query((str(under / "topomap"), str(under / "query")), facts, frozenset(answers))
+
+
+def _so(test: Callable[..., bool], numbers: list[int], h: Hypothesis) -> bool:
+    return test(h, *numbers)
+
+
+def _compared(
+    figure: Callable[[Hypothesis], int], compare: Callable[..., bool], number: int, h: Hypothesis
+) -> bool:
+    return compare(figure(h), number)
+
+
+def further() -> Iterator[Query]:
+    """Where to go next, and why not: maps of one world, and hypotheses of one experience."""
+    for seed in range(200):
+        draw = random.Random(f"further {seed}")
+        n = draw.choice([1, 2, 3, 4])
+        carried = n in (2, 3) and draw.random() < 0.5
+        if seed % 4:
+            _, among = walks.scattered(draw, 3)
+            out = draw.random() < 0.3
+            among = [numbered(draw, one, out and draw.random() < 0.7) for one in among]
+            facts = bare(among)
+        else:
+            experience, found = signed(draw) if seed % 8 else walks.drawn(draw, 3, 6)
+            facts = experience.facts()
+            for number, at in enumerate(found):
+                facts += "".join(f"map({number},{t},{p},{s}). " for t, (p, s) in enumerate(at))
+            among = [walks.standing(experience, at) for at in found]
+        yield from planned(facts, among, n, carried, draw.choice([1, 2]))
+        for pairs in (None, [(0, 1)])[: len(among)]:
+            yield proved(facts, among, carried and seed % 4 > 0, pairs)
+    for draw, among in rings():
+        carried = draw.random() < 0.8
+        yield from planned(bare(among), among, draw.randint(1, 4), carried, 1)
+        yield proved(bare(among), among, carried, None)
+    yield from planned(bare(among), among, None, False, 1)
+    among = [crossings(ways) for ways in TWO_MARKERS]
+    yield from planned(bare(among), among, 3, True, 1)
+    ends = {(0, 1): (1, 3), (1, 3): (0, 1)}
+    less = Standing(world(4, ends), (0, 1))
+    more = Standing(world(4, ends | {(1, 1): (2, 3), (2, 3): (1, 1)}), (0, 1))
+    for among in ([less, more], [more, less]):
+        yield from planned(bare(among), among, 1, False, 1)
+        yield proved(bare(among), among, False, None)
+
+
+# Two markers would tell these three by three steps, and one does not.
+TWO_MARKERS = (
+    {(0, 1): (0, 2), (0, 3): (0, 0)},
+    {(0, 1): (1, 0), (1, 1): (2, 0), (2, 1): (2, 2)},
+    {(0, 1): (1, 0), (1, 1): (2, 0), (2, 1): (3, 0)},
+)
+
+
+def crossings(ways: dict) -> Standing:
+    """A map of places with four gateways each."""
+    links = ways | {there: here for here, there in ways.items()}
+    stars = {place: frozenset(range(4)) for place, _ in links}
+    return Standing(TopologicalMap(4, stars, links), (0, 0))
+
+
+def signed(draw: random.Random) -> tuple[Experience, list]:
+    """Hypotheses of an experience with landmarks."""
+    while True:
+        experience, found = walks.drawn(draw, 3, 8)
+        if any(experience.landmarks) and len(found) > 1:
+            return experience, found
+
+
+def rings() -> Iterator[tuple[random.Random, list[Standing]]]:
+    """Maps that look alike, but for what a marker tells, or a sign: rings of some places, of
+    which each may have a dead end beside it."""
+    for seed in range(60):
+        draw = random.Random(f"rings {seed}")
+        ends = draw.random() < 0.5
+        among = []
+        for size in draw.sample(range(1, 5), draw.choice([2, 2, 3])):
+            links = {(place, 1): ((place + 1) % size, 3) for place in range(size)}
+            if ends:
+                links |= {(place, 0): (size + place, 2) for place in range(size)}
+            made = world(4, links | {there: here for here, there in links.items()})
+            start = (size, 2) if ends else (0, 1)
+            if seed % 5 == 1 and ends and size > 1:  # the first place has no dead end
+                kept = {a: b for a, b in links.items() if a != (size - 1, 0)}
+                made = world(4, kept | {there: here for here, there in kept.items()})
+            if seed % 5 == 0:
+                others = [place for place in made.stars if place != start[0]]
+                made = replace(made, landmarks={place: {"a"} for place in others[-1:]})
+            among.append(Standing(made, start))
+        yield draw, among
+
+
+def numbered(draw: random.Random, one: Standing, out: bool) -> Standing:
+    """The same with numbers for places; if the marker is out, it lies where it is not seen."""
+    number = {place: count for count, place in enumerate(one.world.stars)}
+    stars = {number[place]: star for place, star in one.world.stars.items()}
+    links = {(number[p], s): (number[q], x) for (p, s), (q, x) in one.world.links.items()}
+    signs = {number[place]: terms for place, terms in one.world.landmarks.items()}
+    world = replace(one.world, stars=stars, links=links, landmarks=signs)
+    dstate = number[one.dstate[0]], one.dstate[1]
+    elsewhere = [place for place in stars if place != dstate[0]]
+    return Standing(world, dstate, draw.choice(elsewhere) if out and elsewhere else None)
+
+
+def bare(among: list[Standing]) -> str:
+    """The maps as facts of their own."""
+    facts = f"slots({among[0].world.slots}). "
+    for number, one in enumerate(among):
+        for place, slot in one.world.gateways():
+            facts += f"gateway({number},{place},{slot}). "
+        for (place, slot), (other, at) in one.world.links.items():
+            facts += f"link({number},{place},{slot},{other},{at}). "
+        for place, terms in one.world.landmarks.items():
+            facts += "".join(f"sign({number},{place},{term}). " for term in terms)
+        facts += "stands({},{},{}). ".format(number, *one.dstate)
+        facts += f"lies({number},{one.marker}). " if one.marker is not None else ""
+    return facts
+
+
+def planned(
+    facts: str, among: list[Standing], n: int | None, carried: bool, most: int
+) -> Iterator[Query]:
+    """The best walks of at most n steps (6 without a number), where a map stands for up to
+    ``most`` maps."""
+    weights = [1 + number % most for number in range(len(among))]
+    options = ("--opt-mode=optN",) if n is None else ("--opt-mode=optN", "-c", f"n={n}")
+    n = 6 if n is None else n
+    facts += "carried. " * carried
+    carried = carried and all(one.marker is None for one in among)
+    out_of: list = []
+    tells: list = []
+    for walk, drop, pairs, out in walks.every(among, n, carried):
+        left = max(
+            sum(w for j, w in enumerate(weights) if (min(i, j), max(i, j)) not in pairs)
+            for i in range(len(among))
+        )
+        missed = sum(w for j, w in enumerate(weights) if j not in out)
+        rest = [len(walk), *[int(drop is not None)] * carried, *walk, *[0] * (n - len(walk))]
+        rest += [drop or 0] * carried
+        tells.append((left, *rest, walk, drop))
+        out_of.append((missed, *rest, walk, drop))
+    for file, costs in (("explore", tells), ("unseen", out_of)):
+        *cost, walk, drop = min(costs, key=lambda one: one[:-2])
+        atoms = [f"go({step},{turn})" for step, turn in enumerate(walk, 1)]
+        atoms += [f"drop({drop})"] if drop is not None else []
+        sizes = "".join(f"size({i},{w}). " for i, w in enumerate(weights) if w > 1)
+        yield Query((file,), facts + sizes, frozenset({(tuple(cost), frozenset(atoms))}), options)
+
+
+def proved(facts: str, among: list[Standing], carried: bool, pairs: list | None) -> Query:
+    """Which maps no walk tells apart, with the proof."""
+    facts += "carried. " * carried
+    carried = carried and all(one.marker is None for one in among)
+    atoms = []
+    for i, j in pairs or combinations(range(len(among)), 2):
+        one, other = among[i], among[j]
+        reached, alike = walks.related(one, other, carried)
+        if not alike:
+            continue
+        ends = set()
+        for (place, slot), (image, at), lies in reached:
+            where = ",".join("nowhere" if place is None else str(place) for place in lies)
+            atoms.append(f"related({i},{j},({place},{slot}),({image},{at}),({where}))")
+            ends |= {(1, place), (2, image)}
+        opened = [
+            f"open({i},{j},{side},{place},{slot})"
+            for side, world in ((1, one.world), (2, other.world))
+            for place, slot in world.pending()
+            if (side, place) in ends
+        ]
+        atoms += [*opened, f"{'alike' if opened else 'bisimilar'}({i},{j})"]
+    facts += "".join(f"ask({i},{j}). " for i, j in pairs or ())
+    return Query(("bisimilar",), facts, shown(*atoms))
+
+
+def following() -> Iterator[Query]:
+    """Experiences step by step: all hypotheses, the planar ones, those of few places, what
+    they cost, the best closed ones, and which visits are of one place. Steps that lead
+    elsewhere are taken back."""
+    draws = [random_experience(random.Random(f"following {seed}"), 9) for seed in range(40)]
+    draws += [random_experience(random.Random(f"marked {seed}"), 9, True) for seed in range(24)]
+    for number, experience in enumerate([*(EXPERIENCES | WORLDS).values(), *draws]):
+        truth = Truth(experience)
+        head, *lines = experience.facts().splitlines()
+        names, steps = list(range(len(lines))), tuple(lines)
+        if number % 2:
+            names, steps = astray(random.Random(f"astray {number}"), experience)
+
+        def atoms(at, names=names):
+            return frozenset(f"at({names[t]},{names[p]},{s})" for t, (p, s) in enumerate(at))
+
+        def asked(
+            found, *more, parts=(), arguments=(), facts=head, steps=steps, all=("--project",)
+        ):
+            return Query(
+                ("online", *more), facts, frozenset(found), (*all, *arguments), steps,
+                ("step", *parts),
+            )  # fmt: skip
+
+        every, ignore = truth.final, ("--opt-mode=ignore",)
+        yield asked([((), atoms(at)) for at in every], arguments=ignore)
+        bound, parts = ((None, ("planar",)), (3, ("bound",)), (4, ("bound", "planar")))[number % 3]
+        found = [
+            ((), atoms(at))
+            for at in truth.having(*parts[-1:] * (parts[-1] == "planar"), bound=bound)
+        ]
+        few = () if bound is None else ("-c", f"places={bound}")
+        yield asked(found, parts=parts, arguments=(*ignore, *few))
+        costs = {at: h.cost() for at, h in every.items()}
+        if number % 3 == 0:
+            fewest = truth.least(lambda h: h.cost(), every)
+            found = [(costs[at], atoms(at)) for at in fewest]
+            yield asked(found, arguments=("--opt-mode=optN",))
+        elif number % 3 == 1:
+            fewest = truth.least(lambda h: h.cost(), truth.having("closed"))
+            found = [(costs[at], atoms(at)) for at in fewest]
+            ends = (*steps, f":- not closed({names[-1]}).")
+            yield asked(found, arguments=("--opt-mode=optN",), steps=ends)
+        else:
+            told = [((), atoms(at) | together(experience.slots, at, names)) for at in every]
+            yield asked(told, "online/certain", arguments=ignore)
+
+
+def astray(draw, experience):
+    """The same experience with steps that lead elsewhere and are taken back: the numbers of
+    its own steps, and all the steps."""
+    names, steps, last = [], [], -1
+    for step in range(experience.steps + 1):
+        if step and draw.random() < 0.4:
+            turn = draw.choice(sorted(experience.views[step - 1]))
+            last += 1
+            steps.append(f"turn({last},{turn}). after({last},{names[-1]}). view({last},0).")
+            steps.append(str(last))
+        last += 1
+        facts = [f"view({last},{slot})." for slot in sorted(experience.views[step])]
+        facts += [f"landmark({last},{term})." for term in sorted(experience.landmarks[step])]
+        told = experience.drops, experience.picks, experience.markers
+        facts += [f"{n}({last})." for n, of in zip(MARKER, told, strict=True) if step in of]
+        if step:
+            facts.append(f"turn({last},{experience.turns[step - 1]}).")
+            facts += [f"after({last},{names[-1]})."] * (last - 1 != names[-1])
+        names.append(last)
+        steps.append(" ".join(facts))
+    return names, tuple(steps)
+
+
+def together(slots, at, names):
+    """What certain.lp shows of a hypothesis."""
+    found = {f"new({names[t]})" for t, (p, _) in enumerate(at) if p == t}
+    for u, (q, there) in enumerate(at):
+        for t, (p, here) in enumerate(at[:u]):
+            if p == q:
+                pair = f"{names[t]},{names[u]}"
+                found |= {f"one({pair})", f"same({pair},{(there - here) % slots})"}
+    return frozenset(found)
+
+
+SUITES = (
+    theory,
+    marker,
+    given_up,
+    misread,
+    phases,
+    squares,
+    ends,
+    check,
+    demands,
+    faults,
+    asked,
+    further,
+    following,
+)
 
 
 @cache

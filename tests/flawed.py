@@ -4,7 +4,7 @@ import random
 from collections.abc import Iterator
 
 from topomap import search
-from topomap.experience import Experience, parse
+from topomap.experience import MARKER, Experience, parse
 from topomap.solver import Query
 from worlds import random_experience
 
@@ -19,8 +19,11 @@ TWISTED = ("0 1", "0: 0 1", "1: 0 3", "3: 0 3")
 # The link in the midst of a street is its newest.
 GROWING = ("0 1 2", "2: 0 1 a", "0: 0 2 3", "2: 0 3", "3: 0 2 3", "2: 0 3 a")
 CORNERS = ("0 1", "0: 0 1", "1: 0 3")
-# The rule, what is seen ("turn: gateways", and landmarks), a sound map and a map that breaks
-# it, as a place and a gateway after each step, and the step at which it does.
+TAKEN = ("0 drop", "0: 0 2", "0: 0 pick", "0: 0 2", "0: 0")
+MOVED = ("0 drop", "0: 0 2", "0: 0 pick drop", "0: 0 2", "0: 0 marker")
+# The rule, what is seen ("turn: gateways", landmarks, what is done with the marker), a sound map
+# and a map that breaks it, as a place and a gateway after each step, and the step at which it
+# does.
 MAPS = [
     ("exactly_one", CORRIDOR, "0.0 1.0 2.0 1.2", "0.0 1.0 - 1.2", 2),
     ("exactly_one", CORRIDOR, "0.0 1.0 2.0 1.2", "0.0 1.0 2.0 1.2 0.0", 4),
@@ -34,6 +37,11 @@ MAPS = [
     ("landmark", ("0 a", "0: 0 2 a", "2: 0", "0: 0 2 a"), "0.0 1.0 2.0 1.2", "0.0 1.0 0.0 1.2", 2),
     ("landmark", ("0", "0: 0 2", "2: 0", "0: 0 2 a"), "0.0 1.0 2.0", "0.0 1.0 2.0 1.2", 3),
     ("landmark", ("0", "0: 0 2 a", "2: 0", "0: 0 2"), "0.0 1.0 2.0", "0.0 1.0 2.0 1.2", 3),
+    ("marker", ("0 drop", "0: 0 2", "0: 0 marker"), "0.0 1.0 0.0", "0.0 1.0 2.0", 2),
+    ("marker", ("0 drop", "0: 0 2", "2: 0"), "0.0 1.0 2.0", "0.0 1.0 0.0", 2),
+    ("marker", ("0 drop", "0: 0 2", "0: 0 pick"), "0.0 1.0 0.0", "0.0 1.0 2.0", 2),
+    ("marker", TAKEN, "0.0 1.0 0.0 1.0 0.0", "0.0 1.0 2.0 1.0 4.0", 2),
+    ("marker", MOVED, "0.0 1.0 0.0 1.0 0.0", "0.0 1.0 0.0 1.0 4.0", 4),
     ("schema", CORRIDOR, "0.0 1.0 2.0 1.2", "0.0 1.0 2.0 3.0", 3),
     ("schema", ("0 1", "0: 0 1"), "0.0 1.0", "0.0 0.0", 1),
     ("path_twice", LASSO, "0.0 1.0 0.0 3.0 0.1 5.0", "0.0 1.0 0.0 3.0 0.1 1.1", 5),
@@ -58,10 +66,9 @@ def of_texts(steps: tuple[str, ...]) -> Experience:
     for step, text in enumerate(steps):
         turn, _, view = text.rpartition(":")
         facts += [f"turn({step},{turn})."] if step else []
-        facts += [
-            f"view({step},{word})." if word.isdigit() else f"landmark({step},{word})."
-            for word in view.split()
-        ]
+        for word in view.split():
+            name = "view" if word.isdigit() else "landmark"
+            facts.append(f"{word}({step})." if word in MARKER else f"{name}({step},{word}).")
     return parse(" ".join(facts), "test")
 
 
@@ -98,13 +105,15 @@ def with_errors(draw: random.Random, experience: Experience, at: At) -> At:
     return wrong
 
 
-def mapped(draw: random.Random, steps: int) -> tuple[Experience, At]:
-    """A random experience, and a sound map of it with few paths."""
-    experience = random_experience(draw, steps)
+def mapped(draw: random.Random, steps: int, marker: bool = False) -> tuple[Experience, At]:
+    """A random experience, and a sound map of it with few paths; with a marker, the real one may
+    be none."""
+    experience = random_experience(draw, steps, marker)
     for node in search.best_first(search.root(experience, Query())):
         if node.steps == experience.steps:
             return experience, [(step, *dstate) for step, dstate in enumerate(node.dstates)]
-    raise AssertionError("no map")
+    assert marker
+    return mapped(draw, steps, marker)
 
 
 def by_hand() -> Iterator[tuple[Experience, At]]:
@@ -118,7 +127,7 @@ def drawn(number: int) -> Iterator[tuple[Experience, At]]:
     """Random maps, sound and with errors."""
     for seed in range(number):
         draw = random.Random(f"flawed {seed}")
-        experience, at = mapped(draw, 10)
+        experience, at = mapped(draw, 10, marker=seed % 3 == 2)
         yield experience, at
         for _ in range(3):
             yield experience, with_errors(draw, experience, at)
@@ -156,6 +165,24 @@ INSTANCES = {
     "slots(4). view(0,0). turn(1,4). view(1,0).": "1,slot(4) 1,no_gateway(4)",
     "view(0,0). view(0,a).": "-1,no_slots 0,slot(a)",
     "slots(4). view(0,0). turn(1,3). view(1,0).": "1,no_gateway(3)",
+    "slots(4). view(0,0). drop(0). turn(1,0). view(1,0). drop(1).": "1,put_down",
+    "slots(4). view(0,0). drop(0). turn(1,0). view(1,0). pick(1). drop(1).": "",
+    "slots(4). view(0,0). drop(0). marker(0). turn(1,0). view(1,0). marker(1). pick(1).": "",
+    "slots(4). view(0,0). drop(0). turn(1,0). view(1,0). turn(2,0). view(2,0). drop(2).": (
+        "2,put_down"
+    ),
+    "slots(4). view(0,0). drop(0). turn(1,0). view(1,0). pick(1). turn(2,0). view(2,0). drop(2).": (
+        ""
+    ),
+    "slots(4). view(0,0). pick(0).": "0,taken_up",
+    "slots(4). view(0,0). drop(-1). marker(0).": "-1,no_step(-1) 0,no_marker",
+    "slots(4). view(0,0). pick(0). drop(0).": "0,taken_up",
+    "slots(4). view(0,0). marker(0).": "0,no_marker",
+    "slots(4). view(0..2,0). turn(1..2,0). drop(0). pick(1). marker(2).": "2,no_marker",
+    "slots(4). view(0,0). drop(a). pick((1,2)). marker(-1).": (
+        "-1,no_step(a) -1,no_step((1,2)) -1,no_step(-1)"
+    ),
+    "slots(4). view(0,0). drop(1). pick(2). marker(3).": "1,no_step 2,no_step 3,no_step",
     "slots(2000000000). turn(2147483647,0).": (
         "-1,many_slots(2000000000) 0,no_view 1,no_turn 2147483647,no_view"
     ),

@@ -51,8 +51,8 @@ when one gives other answers (other models, shown atoms or costs, or a model twi
 when clingo has an error or a message for it, *endless* when a query takes more than {seconds}
 seconds of the processor or {memory} MiB of memory. (If the encoding without the change gives
 other answers too, the run ends with an error.) When all answers are right, a mutant of
-`fast/`, whose worth is in its size, is *larger* if it grounds to more rules, over all named
-experiences with all the parts and some of what `fast/phases/` is asked. Another one is
+`fast/` or `online/`, whose worth is in its size, is *larger* if it grounds to more rules, over
+all named experiences with all the parts and some of what `fast/phases/` is asked. Another one is
 *equivalent* if `tests/equivalent.toml` says why, and has *survived* if not. Comments,
 `#include` and `#heuristic`, which is but an order of the search, are not mutated.
 """
@@ -66,6 +66,7 @@ COMPLEMENT |= {other: one for one, other in COMPLEMENT.items()}
 
 INCLUDE = re.compile(r'^#include "(.+)\.lp"\.', re.MULTILINE)
 FAST = "fast/"
+LEAN = "fast/", "online/"  # what is there for its size too
 
 Trials = Callable[[list["Mutant"]], Iterator[tuple["Mutant", str]]]
 Key = tuple[str, str, str]  # the file, the rule and the change of a mutant
@@ -98,13 +99,17 @@ def named_files(folder: Path) -> list[str]:
 
 
 def statements(folder: Path, file: str) -> list[ast.AST]:
-    """The statements of an encoding, without its includes and comments."""
+    """The statements of an encoding, without its includes and comments. Where it is of a
+    program part, that is said first."""
     lines = (folder / f"{file}.lp").read_text(encoding="utf-8").splitlines()
     text = "\n".join(line for line in lines if not line.startswith("#include"))
     found: list[ast.AST] = []
     ast.parse_string(text, found.append)
-    left_out = (ast.ASTType.Comment, ast.ASTType.Program)
-    return [statement for statement in found if statement.ast_type not in left_out]
+    return [
+        statement
+        for statement in found
+        if statement.ast_type != ast.ASTType.Comment and str(statement) != "#program base."
+    ]
 
 
 def closure(folder: Path, files: tuple[str, ...]) -> tuple[str, ...]:
@@ -135,7 +140,7 @@ def mutants(folder: Path, file: str) -> list[Mutant]:
     """The mutants of an encoding; of those that read the same, one."""
     found = {}
     for number, statement in enumerate(statements(folder, file)):
-        if statement.ast_type == ast.ASTType.Heuristic:
+        if statement.ast_type in (ast.ASTType.Heuristic, ast.ASTType.Program):
             continue
         rule = str(statement)
         found[number, ""] = Mutant(file, rule, "remove", "remove", number, "")
@@ -203,6 +208,8 @@ def tried(program: str, query: Query) -> str:
         control.add("base", [], program)
         control.add("base", [], query.facts)
         control.ground([("base", [])])
+        for number, step in enumerate(query.steps):
+            go(control, number, step, query.parts)
     except RuntimeError:
         return "refused"
     if messages:
@@ -221,11 +228,25 @@ def tried(program: str, query: Query) -> str:
     return "survived" if right else "killed"
 
 
-def rules(program: str, facts: str) -> int:
+def go(control: clingo.Control, number: int, step: str, parts: tuple[str, ...]) -> None:
+    """Ground the facts of a step and what belongs to it; or take a step back."""
+    if step.isdigit():
+        control.release_external(clingo.Function("active", [clingo.Number(int(step))]))
+        return
+    control.add(f"facts{number}", [], step)
+    visits = re.findall(r"view\((\d+),", step)
+    mine = [(part, [clingo.Number(int(visits[0]))]) for part in parts if visits]
+    control.ground([(f"facts{number}", []), *mine])
+
+
+def rules(program: str, query: Query) -> int:
     """How many rules a program grounds to."""
     control = clingo.Control(["1", "--opt-mode=ignore"])
-    control.add("base", [], program + facts)
+    control.add("base", [], program)
+    control.add("base", [], query.facts)
     control.ground([("base", [])])
+    for number, step in enumerate(query.steps):
+        go(control, number, step, query.parts)
     control.solve()
     return int(control.statistics["problem"]["lp"]["rules"])
 
@@ -258,8 +279,8 @@ def fates(
         return "\n".join(text for name in loaded[files] for text in texts[name])
 
     whole = {files: program(files) for files in loaded}
-    fast = any(mutant.file.startswith(FAST) for mutant in chosen)
-    least = [(query, rules(whole[query.files], query.facts)) for query in measured if fast]
+    lean = any(mutant.file.startswith(LEAN) for mutant in chosen)
+    least = [(query, rules(whole[query.files], query)) for query in measured if lean]
     waiting = list(reversed(chosen))
     running: dict[int, Mutant] = {}
     try:
@@ -279,10 +300,10 @@ def fates(
                     }
                     mine = [query for query in asked if query.files in mutated]
                     fate = suffer(mutated, whole, mine)
-                    if fate == "survived" and mutant.file.startswith(FAST):
+                    if fate == "survived" and mutant.file.startswith(LEAN):
                         signal.setitimer(signal.ITIMER_PROF, SECONDS * len(measured))
                         more = sum(
-                            rules(mutated[query.files], query.facts) - number
+                            rules(mutated[query.files], query) - number
                             for query, number in least
                             if query.files in mutated
                         )
@@ -315,10 +336,11 @@ def marks(
             if tries(files, every, file):
                 texts = [list(map(str, statements(folder, name))) for name in every]
                 digest.update(repr((files, texts)).encode())
-        for query in asked + measured * file.startswith(FAST):
+        for query in asked + measured * file.startswith(LEAN):
             if tries(query.files, loaded[query.files], file):
                 answers = sorted((cost, sorted(atoms)) for cost, atoms in query.answers)
-                digest.update(repr((query.files, query.facts, query.arguments, answers)).encode())
+                asked_for = query.files, query.facts, query.arguments, query.steps, query.parts
+                digest.update(repr((*asked_for, answers)).encode())
         of_file[file] = digest
     found = {}
     for mutant in chosen:

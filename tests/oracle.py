@@ -4,9 +4,10 @@ It shares nothing with the encodings or with the package: it reads bare facts, k
 whole maps as dictionaries, and recomputes each property from its definition. It is
 slow on purpose, and meant for small experiences.
 
-An experience is ``(slots, views, turns, landmarks)``: ``views[t]`` the set of slots
+An experience is ``(slots, views, turns, landmarks, marker)``: ``views[t]`` the set of slots
 seen after step t, ``turns[t]`` the turn of step t (``turns[0]`` is unused),
-``landmarks[t]`` the set of landmarks recognised after step t. A hypothesis is the
+``landmarks[t]`` the set of landmarks recognised after step t; ``marker`` is what was done
+with the marker and when, as ``(t, "put")``, ``(t, "took")``, ``(t, "saw")``. A hypothesis is the
 tuple of its ``(place, gateway)`` after each step, as ``at/3`` gives them.
 """
 
@@ -17,7 +18,7 @@ class Hypothesis:
     """A map, and the dstates through which the agent went."""
 
     def __init__(self, experience, at):
-        self.slots, views, self.turns, _ = experience
+        self.slots, views, self.turns, *_ = experience
         self.at = at
         self.stars = {p: frozenset(views[p]) for p, _ in at}
         self.link = {}
@@ -136,9 +137,24 @@ class Hypothesis:
         return len(self.paths()), len(self.stars)
 
 
+def marked(marker, at):
+    """Whether after the last step the marker is seen if it is where the agent is, and not
+    else: its whole story is told again."""
+    lies = None
+    for t, (place, _) in enumerate(at):
+        sees = (t, "saw") in marker or (t, "took") in marker
+        here = lies == place
+        ready = lies is not None
+        if (t, "took") in marker:
+            lies = None
+        if (t, "put") in marker:
+            lies = place
+    return not ready or sees == here
+
+
 def tree(experience, planar=False, bound=None):
     """All hypotheses by step: a list of lists, one for each step from 0 (Figure 2)."""
-    slots, views, turns, landmarks = experience
+    slots, views, turns, landmarks, marker = experience
     levels = [[((0, 0),)]]
     for t in range(1, len(turns)):
         level = []
@@ -152,7 +168,7 @@ def tree(experience, planar=False, bound=None):
                 return turned == set(views[t]) and landmarks[p] == landmarks[t]
 
             if x in before.link:
-                if fits(*before.link[x]):
+                if fits(*before.link[x]) and marked(marker, (*at, before.link[x])):
                     level.append((*at, before.link[x]))
                 continue
             arrivals = [g for g in before.pending() if g != x and fits(*g)]
@@ -161,7 +177,7 @@ def tree(experience, planar=False, bound=None):
             for arrival in [*arrivals, (t, 0)]:
                 child = (*at, arrival)
                 after = Hypothesis(experience, child)
-                if after.breaks_path_axiom():
+                if after.breaks_path_axiom() or not marked(marker, child):
                     continue
                 if bound is not None and len(after.stars) > bound:
                     continue

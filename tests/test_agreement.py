@@ -92,7 +92,8 @@ def listed(experience, most=150):
 
 @st.composite
 def experiences(draw):
-    return listed(random_experience(draw(st.randoms(use_true_random=False)), 10))
+    marker = draw(st.booleans())
+    return listed(random_experience(draw(st.randoms(use_true_random=False)), 10, marker))
 
 
 def agree_on_parts(experience, truth, every=SOME):
@@ -276,6 +277,7 @@ def test_bounds(case, data):
 
 
 NAMED = EXPERIENCES | WORLDS
+NONE = frozenset()
 
 
 @pytest.mark.parametrize("name", NAMED)
@@ -305,7 +307,8 @@ def test_many(block):
     """A thousand longer experiences, at random but the same each time; what costs most, of
     some of them."""
     for number in range(50):
-        experience, truth = listed(random_experience(random.Random(f"{block}.{number}"), 13), 300)
+        draw = random.Random(f"{block}.{number}")
+        experience, truth = listed(random_experience(draw, 13, marker=number % 3 == 2), 300)
         agree_on_bounds(experience, truth, 1 + number % (experience.steps + 1))
         agree_on_parts(experience, truth, SOME[number % 3 :: 3])
         agree_on_the_tree(experience, truth)
@@ -337,3 +340,7 @@ def test_the_generator_makes_what_it_promises():
     assert {len(view) for e in made for view in e.views} == set(range(1, 7))
     assert any(0 in e.turns[1:] for e in made)
     assert any(any(e.landmarks) for e in made)
+    marked = [random_experience(random.Random(n), 10, marker=True) for n in range(300)]
+    assert [replace(e, drops=NONE, picks=NONE, markers=NONE) for e in marked] == made
+    assert any(e.picks & e.drops for e in marked)
+    assert sum(bool(e.markers) for e in marked) > 100

@@ -14,14 +14,16 @@ from topomap.solver import PARTS as DRIVER_PARTS
 
 FACTS = read(ROOT / "instances/grid-3x3-snake.lp").facts()
 ALL = (*PARTS, "bound", "minimal", "genus")
+FURTHER = ("explore", "unseen", "bisimilar")  # of maps, and not parts of the theory
 STATED = [file for file in named_files(ENCODINGS) if statements(ENCODINGS, file)]
 in_every_form = pytest.mark.parametrize("form", FORMS)
 
 
 def test_these_are_all_the_parts():
     names = {form: {path.stem for path in folder.glob("*.lp")} for form, folder in FORMS.items()}
-    assert names["plain"] == {"topomap", "input", "check", *ALL}
-    assert names["fast"] == {"topomap", *ALL}
+    others = {"input", "check", "noise", "query", "explain", "online", *FURTHER}
+    assert names["plain"] == {"topomap", *others, *ALL}
+    assert names["fast"] == {"topomap", "query", *ALL}
     assert {*DRIVER_PARTS, "bound"} == set(ALL)
 
 
@@ -70,8 +72,28 @@ def test_each_file_says_what_it_is(file):
 
 
 AGGREGATES = {
+    "explore": [
+        "{ left(M,N) }",
+        "I = #sum { G,M: counts(M,G) }",
+        "{ gone(G) }",
+        "I < #sum { G,N: left(M,N), counts(N,G); 1,gone,G: gone(G) }",
+    ],
+    "explore/walk": ["1 >= { go(I,S): turns(S) }", "1 >= { drop(I): I = (0..(n-1)) }"],
     "bound": ["places < #count { P: new(P) }"],
     "input": ["M = #max { T: turned(T) }"],
+    "query": ["N = #count { S: axis(T,S) }", "N = #count { S: view(T,S) }"],
+    "noise": [
+        "noise >= { wrong(T): step(T) }",
+        "{ misread(T,gateway(S)) }",
+        "{ misread(T,landmark(L)) }",
+    ],
+    "online/bound": ["places < #count { P: on(t,P), new(P) }"],
+    "online/costs": ["N = #count { S: view(t,S) }", "N = #count { X: axis(t,X) }"],
+    "online/paths": [
+        "{ joined(A,t): on(t,A), run(A), A < t }",
+        "{ against(t) }",
+    ],
+    "online/places": ["1 = { at(t,P,S): may(P,t,S) }"],
     "theory/places": ["1 = { at(T,P,S): fits(T,P,S) }"],
     "fast/core/places": ["1 = { at(T,P,S): may(P,T,S), first(P), not found(out(T,P,S)) }"],
     "fast/planar": ["1 >= { may(Q,(T-1),X): first(Q) }"],
@@ -100,9 +122,10 @@ AGGREGATES = {
 def test_no_body_weighs_or_counts_derived_atoms(file):
     """clasp miscounts on such bodies (docs/clasp.md): bound.lp counts new/1 alone, each
     atom of which is one chosen atom; input.lp takes the largest of facts; the choices in
-    places.lp are of distinct atoms; those in runs.lp and lines.lp have no bound;
-    fast/planar.lp and fast/phases/counts.lp count facts; ends.lp is solved with --eq=0. Of
-    check.lp nothing reaches clasp (test_check.py)."""
+    places.lp and noise.lp are of distinct atoms; those in runs.lp and lines.lp have no bound;
+    query.lp, online/costs.lp, fast/planar.lp and fast/phases/counts.lp count facts; explore.lp
+    sums facts, and atoms each of which is chosen; online/bound.lp counts new/1 as bound.lp does;
+    ends.lp is solved with --eq=0. Of check.lp nothing reaches clasp (test_check.py)."""
     aggregates = []
 
     class Finder(ast.Transformer):

@@ -346,7 +346,12 @@ def test_want_of_memory(tmp_path, extra, record_property):
 
 
 @pytest.mark.parametrize(
-    "call", [f"search {SNAKE} --bound 16", f"search {LARGE} --order best", f"branching {SNAKE}"]
+    "call",
+    [
+        f"search {SNAKE} --bound 16",
+        f"search {LARGE} --order best",
+        pytest.param(f"branching {SNAKE}", marks=pytest.mark.long),
+    ],
 )
 def test_want_of_memory_of_a_search(tmp_path, call):
     """What it has counted until then is written."""

@@ -18,7 +18,8 @@ NAMES = list(figures.figures(ROOT / "instances", QUIET))
 
 
 @pytest.mark.parametrize(
-    "name", [n if n != "manhattan" else pytest.param(n, marks=pytest.mark.long) for n in NAMES]
+    "name",
+    [pytest.param(n, marks=[pytest.mark.long] * (n in ("manhattan", "figure4"))) for n in NAMES],
 )
 def test_the_committed_figures_are_what_is_drawn(tmp_path, monkeypatch, name):
     """By their texts and parts; and where no line bends, by the coordinates, but for what may

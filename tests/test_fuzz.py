@@ -16,6 +16,7 @@ import shlex
 import signal
 import string
 import tempfile
+from dataclasses import replace
 from pathlib import Path
 
 import networkx as nx
@@ -94,7 +95,7 @@ def on_values(draw, text):
 def made(draw, kind):
     """A good input of this kind."""
     if kind == "instance":
-        return "% made\n" + random_experience(draw, 5).facts()
+        return "% made\n" + random_experience(draw, 5, marker=True).facts()
     if kind == "maps":
         return maps(draw)
     if kind == "truth":
@@ -102,6 +103,8 @@ def made(draw, kind):
         return json.dumps({"maps": [{"at": [[t, *dstate] for t, dstate in enumerate(at)]}]})
     if kind == "network":
         return network(draw)
+    if kind == "proof":
+        return proof()
     if kind == "journal":
         return journal()
     if kind == "graphml":
@@ -119,12 +122,13 @@ def made(draw, kind):
 def maps(draw):
     """Maps as solve writes them, or clingo."""
     seen = instance(grid(2, 2), "snake").experience
-    query = Query(frozenset(["closed"]))
+    query = Query(frozenset(["closed"]), noise=draw.choice([None, 1]))
     out = io.StringIO()
     report = Report(out, "good.lp", seen, query, None, None, as_json=True)
-    found = list(search.hypotheses(seen, query, Watch(quiet=True)))
+    found = list(search.hypotheses(seen, replace(query, noise=None), Watch(quiet=True)))
     for one in found:
-        report.add(one)
+        misread = [] if query.noise is None else [(draw.randrange(4), draw.randrange(4))]
+        report.add(replace(one, misread=tuple(misread)))
     report.end(None)
     values = [[f"at({t},{p},{s})" for t, (p, s) in enumerate(one.at)] for one in found]
     clingo = {"Solver": "clingo", "Call": [{"Witnesses": [{"Value": atoms} for atoms in values]}]}
@@ -135,6 +139,16 @@ def scene():
     """The map of a grid."""
     seen = instance(grid(2, 2), "snake")
     return Scene(seen.experience.map_of(seen.truth), seen.truth, "good.lp", kind="optimal")
+
+
+@functools.cache
+def proof():
+    """That no walk tells two maps apart."""
+    with tempfile.TemporaryDirectory() as folder, contextlib.redirect_stdout(io.StringIO()):
+        file, snake = Path(folder) / "proof", Path(folder) / "three.lp"
+        snake.write_text(THREE)
+        assert cli.main(["explore", str(snake), "--proof", str(file)]) == 1
+        return file.read_text()
 
 
 @functools.cache
@@ -165,9 +179,12 @@ READERS = {  # the calls that read a file, and how to spoil it
             "solve FILE --optimal --json --limit 5 --timeout 5 -o out",
             "solve good.lp FILE --limit 2 --timeout 5 --json -o out",
             "count FILE --horizon 4 --timeout 5 --json -o out",
+            "ask FILE planar same(0,0) --timeout 5 --json -o out",
             "search FILE --timeout 5 --json -o out",
             "branching FILE --timeout 5 -o out",
+            "solve FILE --noise 1 --horizon 2 --limit 5 --timeout 5 --json -o out",
             "report FILE --timeout 5 --horizon 5 --maps 1 -o out",
+            "explore FILE --timeout 5 --json --proof proof -o out",
         ],
         EDITS,
     ),
@@ -176,11 +193,14 @@ READERS = {  # the calls that read a file, and how to spoil it
         [
             "check good.lp FILE -o out",
             "check good.lp FILE --planar --closed --bound 4 --json -o out",
+            "check good.lp FILE --noise 2 -o out",
             "show FILE",
             "export FILE --format graphml -o out",
+            "explore good.lp --among FILE --timeout 5 -o out",
         ],
         (*EDITS, on_values),
     ),
+    "proof": (["explore three.lp --check FILE -o out"], (*EDITS, on_values)),
     "network": (
         [
             "generate network FILE --route tour -o out",
@@ -317,7 +337,7 @@ def value(draw, action):
     where = (action.metavar or action.dest).upper()
     if draw.random() < 0.05:
         return draw.choice([*TOKENS[:40], *NUMBERS, *WORDS, *FILES[:4]])
-    if set(action.option_strings) & {"-o", "--output", "-d", "--directory"}:
+    if set(action.option_strings) & {"-o", "--output", "-d", "--directory", "--proof"}:
         return draw.choice(["out", *OUTPUTS])
     if any(word in where for word in ("FILE", "INSTANCE", "FAMILY", "MAP")):
         return draw.choice(FILES)
@@ -343,6 +363,10 @@ def command_line(draw):
                 words.append([word])
     if draw.random() < 0.1:
         words.append([draw.choice([*TOKENS, "--", "-", "--none", "-x", "@good.lp"])])
+    if path == ("follow",):  # which else waits without end, or has a line for each fault
+        words = [["--no-wait"], *(word for word in words if word != ["--keep-going"])]
+    if path[0] == "simulate":  # a robot may walk for long
+        words = [["--timeout=1"], *(word for word in words if word[0][:9] != "--timeout")]
     draw.shuffle(words)
     return [*path, *(word for group in words for word in group)]
 

@@ -9,7 +9,7 @@ import pytest
 from conftest import ENCODINGS, ROOT, run
 from flawed import INSTANCES
 from topomap.errors import InputError
-from topomap.experience import LARGEST, parse
+from topomap.experience import ARITY, LARGEST, parse
 from worlds import random_experience
 
 PROGRAM = (ENCODINGS / "input.lp").read_text()
@@ -22,10 +22,13 @@ KINDS = {  # what topomap.experience says, and the error that says the same
     r"step (?P<T>\d+): no turn, .*": "{T},no_turn",
     r"step 0: a turn; .*": "0,turn_at_start",
     r"step (?P<T>\d+): more than one turn": "{T},two_turns",
-    r"step (?P<T>\d+): no view": "{T},no_view",
+    r"step (?P<T>\d+): no view .*": "{T},no_view",
     r"step (?P<T>\d+): slot (?P<S>-?\d+) is not in .*": r"{T},slot\({S}\)",
     r"step (?P<T>\d+): the view lacks slot 0.*": "{T},no_slot_0",
     r"step (?P<T>\d+): turn (?P<S>\d+): no gateway.*": r"{T},no_gateway\({S}\)",
+    r"step (?P<T>\d+): the marker is put down.*": "{T},put_down",
+    r"step (?P<T>\d+): the marker is taken up.*": "{T},taken_up",
+    r"step (?P<T>\d+): the marker is seen.*": "{T},no_marker",
     r".* a step or a slot is a whole number": r"-?\d+,(no_number|no_step|slot)\(.*\)",
 }
 
@@ -57,16 +60,17 @@ def corrupted(draw):
     facts = [
         [name, *terms.split(",", 1)]
         for name, terms in re.findall(
-            r"(\w+)\((.*?)\)\.", random_experience(draw, draw.choice([0, 1, 2, 5])).facts()
+            r"(\w+)\((.*?)\)\.",
+            random_experience(draw, draw.choice([0, 1, 2, 5]), marker=True).facts(),
         )
     ]
     for _ in range(draw.choice([0, 1, 1, 1, 2, 3])):
         terms = [str(draw.choice(NUMBERS)) if draw.random() < 0.8 else draw.choice(TERMS)]
         terms.append(str(draw.choice(NUMBERS)) if draw.random() < 0.8 else draw.choice(TERMS))
-        name = draw.choice(["slots", "view", "turn", "landmark"])
+        name = draw.choice(list(ARITY))
         edit = draw.choice(["drop", "add", "change", "change", "shift"]) if facts else "add"
         if edit == "add":
-            facts.append([name, *terms[: 1 + (name != "slots")]])
+            facts.append([name, *terms[: ARITY[name]]])
         elif edit == "drop":
             del facts[draw.randrange(len(facts))]
         elif edit == "change":

@@ -16,7 +16,7 @@ from itertools import combinations, product
 
 import oracle
 import pytest
-from conftest import BIN, ROOT, answers, lacking, run
+from conftest import BIN, ROOT, answers, lacking, plain, run
 from matplotlib.path import Path as Outline
 from topomap import cli, svg, words
 from topomap.agreement import Agreement
@@ -146,14 +146,19 @@ def test_words_of_turns():
 
 def refusals(seen, at, planar, perpendicular, bound):
     """Where the next step may arrive, and the rule that refuses it, from the definitions."""
-    before = oracle.Hypothesis((seen.slots, seen.views, (None, *seen.turns), seen.landmarks), at)
+    before = oracle.Hypothesis(plain(seen), at)
     step = len(at)
     out = before.leaves(step)
 
     def unlike(place, slot):
         if {(other - slot) % seen.slots for other in seen.views[place]} != set(seen.views[step]):
             return "view"
-        return "landmark" if seen.landmarks[place] != seen.landmarks[step] else None
+        if seen.landmarks[place] != seen.landmarks[step]:
+            return "landmark"
+        return marked((place, slot))
+
+    def marked(arrival):
+        return None if oracle.marked(plain(seen)[-1], (*at, arrival)) else "marker"
 
     def broken(arrival):
         child = (*at, arrival)
@@ -162,8 +167,7 @@ def refusals(seen, at, planar, perpendicular, bound):
             return "circular" if "circular" in fault else "twice"
         if planar and not before.one_face(out, arrival):
             return "planarity"
-        experience = seen.slots, seen.views, (None, *seen.turns), seen.landmarks
-        if perpendicular and not oracle.Hypothesis(experience, child).perpendicular():
+        if perpendicular and not oracle.Hypothesis(plain(seen), child).perpendicular():
             return "perpendicular"
         return None
 
@@ -171,12 +175,13 @@ def refusals(seen, at, planar, perpendicular, bound):
         return {before.link[out]: unlike(*before.link[out])}
     found = {g: unlike(*g) or broken(g) for g in before.pending() if g != out}
     full = bound is not None and len(before.stars) >= bound
-    return found | {(step, 0): "bound" if full else None}
+    return found | {(step, 0): marked((step, 0)) or ("bound" if full else None)}
 
 
 def test_what_is_refused_is_what_the_definitions_refuse(record_property):
     draw = random.Random("refused")
-    experiences = [*WORLDS.values(), *(random_experience(draw, 9) for _ in range(60))]
+    drawn = (random_experience(draw, 9, marker=number % 2 > 0) for number in range(60))
+    experiences = [*WORLDS.values(), *drawn]
     rules = Counter()
     for seen in experiences:
         planar, perpendicular = draw.random() < 0.4, draw.random() < 0.3
@@ -220,7 +225,8 @@ def by_rule(found):
 def test_what_is_refused_of_each_hypothesis():
     """As the definitions have it, and as the search has it."""
     draws = random.Random("of each")
-    some = [*WORLDS.values(), *(random_experience(draws, 8) for _ in range(20))]
+    drawn = (random_experience(draws, 8, marker=number % 2 > 0) for number in range(20))
+    some = [*WORLDS.values(), *drawn]
     rules = Counter()
     for seen in some:
         planar, perpendicular = draws.random() < 0.5, draws.random() < 0.5

@@ -15,7 +15,7 @@ from topomap.experience import Experience, explore
 from topomap.generate import instance
 from topomap.solver import FORMS, Program, Query, Stopped, Watch
 from topomap.topology import TopologicalMap
-from worlds import WORLDS, random_world
+from worlds import WORLDS, random_world, with_marker
 
 QUIET = Watch(quiet=True)
 SQUARE = ("closed", "perpendicular")
@@ -92,7 +92,7 @@ def square_world(draw: random.Random) -> TopologicalMap:
 
 def toured(draw: random.Random, most: int, make=square_world) -> tuple[Experience, int | None]:
     """A walk on which, as a rule, all ways of a square world are taken, most of them but
-    once; and a horizon, as a rule none."""
+    once, at times with a marker; and a horizon, as a rule none."""
     while True:
         made = make(draw)
         start = place, slot = draw.choice(sorted(made.links))
@@ -112,7 +112,8 @@ def toured(draw: random.Random, most: int, make=square_world) -> tuple[Experienc
             taken |= {(place, slot), there}
             place, slot = there
         if len(route) < most:
-            experience = explore(made, start, route)[0]
+            marker = with_marker(route) if len(route) % 3 == 2 else ()
+            experience = explore(made, start, route, *marker)[0]
             cut = experience.steps + draw.randint(-3, 1)
             return experience, max(cut, 0) if draw.random() < 0.2 else None
 

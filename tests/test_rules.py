@@ -38,6 +38,9 @@ a run does not return            |               | ahead: 0.0 1.0 2.0           
 a place is once on a path        |               | lasso: 0.0 1.0 0.0 3.0 0.1 5.0   | lasso: 0.0 1.0 0.0 3.0 0.1 1.1
 no path is circular              |               | lasso: 0.0 1.0 0.0 3.0 0.1 5.0   | lasso: 0.0 1.0 0.0 3.0 0.1 1.2
 no loop at a place               |               | loop: 0.0 1.0                    | loop: 0.0 0.1
+the marker is seen where it lies |               | marker: 0.0 1.0 0.1              | no marker: 0.0 1.0 0.1
+and not elsewhere                |               | no marker: 0.0 1.0 2.0           | marker: 0.0 1.0 2.0
+who takes it up sees it          |               | taken: 0.0 1.0 0.1               | taken: 0.0 1.0 2.0
 links are on one face            | planar        | ears: 0.0 1.0 2.0 0.2 4.0 5.0 6.0 | ears: 0.0 1.0 2.0 0.2 4.0 5.0 0.1
 Euler's formula                  | euler         | ears: 0.0 1.0 2.0 0.2 4.0 5.0 6.0 | ears: 0.0 1.0 2.0 0.2 4.0 5.0 0.1
 no gateway is pending            | closed        | square: 0.0 1.0 2.0 3.0 0.3      | square: 0.0 1.0 2.0 3.0 4.0

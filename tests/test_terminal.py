@@ -281,6 +281,7 @@ def test_links_that_cross_are_two_stubs_with_one_letter():
     assert not is_dots(rows)
 
 
+@pytest.mark.long
 def test_a_torus_in_dots():
     scene = walk(grid(3, 3, "torus").map, 200, random.Random(1))
     rows, words = printed(scene)

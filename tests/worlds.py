@@ -40,9 +40,10 @@ def _thinned_grid(draw: random.Random) -> TopologicalMap:
             return world(4, dict(kept) | {b: a for a, b in kept})
 
 
-def random_experience(draw: random.Random, steps: int) -> Experience:
+def random_experience(draw: random.Random, steps: int, marker: bool = False) -> Experience:
     """A walk of up to ``steps`` steps through a random world, with a liking for going
-    straight on, from any gateway of any place."""
+    straight on, from any gateway of any place; the same walk with a marker put down and taken
+    up here and there."""
     made = random_world(draw)
     start = place, slot = draw.choice(sorted(made.links))
     route = []
@@ -52,7 +53,15 @@ def random_experience(draw: random.Random, steps: int) -> Experience:
             ahead = draw.choice(sorted(made.stars[place]))
         route.append(ahead)
         place, slot = made.links[place, ahead]
-    return explore(made, start, route)[0]
+    return explore(made, start, route, *(with_marker(route) if marker else ()))[0]
+
+
+def with_marker(route: list[int]) -> list[list[int]]:
+    """Steps of a route at which the marker might be put down and taken up, at random but the same
+    each time."""
+    own = random.Random(f"marker {route}")
+    rates = 0.4, own.choice([0, 0.5])
+    return [[step for step in range(len(route) + 1) if own.random() < rate] for rate in rates]
 
 
 def walked(slots: int, ways: str, start: str, route: str, signs: str = "") -> Experience:

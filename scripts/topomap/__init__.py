@@ -24,6 +24,17 @@ searches without it, reads answers, checks and compares them.
 ``maps``            maps that anyone made: read, and judged
 ``journal``         long runs go on where they were cut
 ``report``          maps as JSON, and as lines to read
+``statements``      statements about maps, as ask and explain take them
+``ask``             whether they hold in all maps, in some or in none
+``explain``         why a statement cannot be: reasons none of which can be spared
+``reasons``         the same in words, spelled out from a map
+``explore``         the walk that tells maps apart; proofs that there is none
+``bisimulation``    a checker of such proofs
+``exploring``       what the subcommand ``explore`` does
+``online``          explorations as they happen: multi-shot clingo, step by step
+``following``       what the subcommand ``follow`` does
+``simulate``        robots that map a world by this alone
+``simulating``      what the subcommand ``simulate`` does
 ``scenes``          maps to be shown: of an instance, or from a file
 ``layout``          where places, links and pending gateways are drawn
 ``planarize``       a planar part of a map, and ways for the other links
@@ -32,7 +43,6 @@ searches without it, reads answers, checks and compares them.
 ``figures``         the paper's figures, from computed answers
 ``terminal``        maps in the lines of a terminal, and in words
 ``exports``         maps for other tools: GraphML, JSON, DOT, clingraph
-``agreement``       what maps agree and differ on
 ``replay``          explorations step by step: what to show, what was refused
 ``words``           explorations in words
 ``svg``             small pictures for a page

@@ -3,7 +3,7 @@
 Predicted: bp/b = (pi / mean p) / (m + 1), with pi pending gateways on the face of the one
 that the step leaves by, p on all f faces, mean p = p / f, and m matches so far.
 Measured: every child is built, and its genus counted anew. Children are counted before the
-path axiom and the bound; one of them is always the map with a new place.
+path axiom, the bound and the marker; one of them is always the map with a new place.
 """
 
 from collections.abc import Callable, Iterator
@@ -12,6 +12,7 @@ from fractions import Fraction
 from typing import Any
 
 from topomap.hypothesis import Hypothesis
+from topomap.report import steps_json
 from topomap.search import breadth_first
 from topomap.solver import Watch
 
@@ -74,7 +75,7 @@ class BranchingNode:
     def json(self) -> dict[str, Any]:
         return {
             "step": self.step,
-            "at": [[step, *dstate] for step, dstate in enumerate(self.at)],
+            "at": steps_json(self.at),
             "m": self.matches,
             "f": self.faces,
             "start_fits": self.start_fits,

@@ -16,7 +16,7 @@ from topomap.topology import Gateway
 At = Sequence[tuple[int, int, int]]  # at(T,P,S)
 Violation = tuple[str, int]
 PATH_RULES = {"path_twice", "path_circular"}
-STEP_RULES = {"exactly_one", "naming", "gateway", "view", "landmark", "schema"}
+STEP_RULES = {"exactly_one", "naming", "gateway", "view", "landmark", "marker", "schema"}
 
 
 def by_rules(experience: Experience, at: At, demands: Sequence[str] = ()) -> set[Violation]:
@@ -57,6 +57,13 @@ def by_definition(experience: Experience, at: At, demands: Sequence[str] = ()) -
             found.add(("view", step))
         if experience.landmarks[step] != experience.landmarks[place]:
             found.add(("landmark", step))
+    for drop in experience.drops:
+        later = sorted(step for step in experience.picks if step > drop)
+        for step in range(drop + 1, min([*later, last]) + 1):
+            if {step, drop} <= stands.keys():
+                spotted = step in experience.markers | experience.picks
+                if spotted != (stands[step][0] == stands[drop][0]):
+                    found.add(("marker", step))
     ends: dict[Gateway, set[Gateway]] = {}
     for step, out, arrival in _ways(experience, stands):
         ends.setdefault(out, set()).add(arrival)

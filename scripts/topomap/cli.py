@@ -8,7 +8,22 @@ from collections.abc import Iterable, Sequence
 from functools import cache
 from typing import Any, NoReturn
 
-from topomap import __version__, commands, exports, maps, page, pictures
+from topomap import (
+    __version__,
+    ask,
+    commands,
+    explain,
+    explore,
+    exploring,
+    exports,
+    following,
+    maps,
+    online,
+    page,
+    pictures,
+    simulating,
+    statements,
+)
 from topomap.environment import MOST_STEPS
 from topomap.errors import BAD_INPUT, DONE, INTERRUPTED, PARTIAL, InputError, say
 from topomap.experience import LARGEST
@@ -75,16 +90,21 @@ def _parser() -> Parser:
     group = parser.add_subparsers(metavar="COMMAND", required=True)
     _add_generate(group)
     _add_solve(group)
+    _add_ask(group)
+    _add_explain(group)
+    _add_explore(group)
+    _add_follow(group)
+    _add_simulate(group)
     _add_count(group)
-    _add_check(group)
     _add_search(group)
     _add_branching(group)
+    _add_check(group)
     _add_table(group)
     _add_family(group)
     _add_draw(group)
+    _add_show(group)
     _add_report(group)
     _add_figures(group)
-    _add_show(group)
     _add_export(group)
     _add_import(group)
     return parser
@@ -142,6 +162,17 @@ def _add_generate(group: Any) -> None:
     add(
         "--steps", type=_number(int, 0, MOST_STEPS), metavar="N", help="cut the route after N steps"
     )
+    _add_start(add, "the one first left by")
+    add("--seed", type=_number(int, 0), metavar="N", help="for walk, signs and maze (default: 0)")
+    add("--name", help="name of the instance (default: made from the arguments)")
+    add("--truth", metavar="FILE", help="also write the true hypothesis, for solve --truth")
+    add("--json", action="store_true", help="print a summary as JSON")
+    add("-o", "--output", metavar="FILE", help="file or folder to write (default: stdout)")
+    _add_environments(command, common, "--route tour")
+
+
+def _add_start(add: Any, facing: str) -> None:
+    """Where an exploration starts, and what it can see."""
     add(
         "--start",
         metavar="PLACE",
@@ -151,7 +182,7 @@ def _add_generate(group: Any) -> None:
         "--facing",
         type=_number(int, 0),
         metavar="SLOT",
-        help="gateway stood at first (default: the one first left by)",
+        help=f"gateway stood at first (default: {facing})",
     )
     add(
         "--signs",
@@ -160,11 +191,11 @@ def _add_generate(group: Any) -> None:
         metavar="RATE",
         help="share of places that carry their own name as a landmark",
     )
-    add("--seed", type=_number(int, 0), metavar="N", help="for walk, signs and maze (default: 0)")
-    add("--name", help="name of the instance (default: made from the arguments)")
-    add("--truth", metavar="FILE", help="also write the true hypothesis, for solve --truth")
-    add("--json", action="store_true", help="print a summary as JSON")
-    add("-o", "--output", metavar="FILE", help="file or folder to write (default: stdout)")
+
+
+def _add_environments(command: Parser, common: Parser, rest: str) -> Any:
+    """The worlds that can be explored; ``rest`` goes into their examples."""
+    name = command.prog.split()[-1]
     kinds = command.add_subparsers(dest="kind", metavar="ENVIRONMENT", required=True)
     for kind, help in (
         ("grid", "a grid of places, four slots, slot 0 north"),
@@ -174,7 +205,7 @@ def _add_generate(group: Any) -> None:
         ("hexagons", "the corners of a sheet of hexagons, six slots"),
         ("triangles", "a triangular lattice, six slots"),
     ):
-        sub = _environment(kinds, kind, common, help, f"{kind} 3 4 --route tour")
+        sub = _environment(kinds, kind, common, help, f"{name} {kind} 3 4 {rest}")
         of = "of hexagons" if kind == "hexagons" else "of places"
         if kind == "triangles":
             of = "of triangles, as networkx counts them"
@@ -192,7 +223,7 @@ def _add_generate(group: Any) -> None:
         "a street or corridor network with coordinates: ways are straight lines between "
         "their ends, and two-way; loops are left out"
     )
-    example = "network city.graphml --slots 4 --north 29 --route tour"
+    example = f"{name} network city.graphml --slots 4 --north 29 {rest}"
     sub = _environment(kinds, "network", common, help, example)
     sub.add_argument("file", metavar="FILE.graphml")
     sub.add_argument(
@@ -209,6 +240,7 @@ def _add_generate(group: Any) -> None:
         metavar="DEGREES",
         help="bearing of slot 0, clockwise of north (default: %(default)g)",
     )
+    return kinds
 
 
 def _environment(kinds: Any, kind: str, common: Parser, help: str, example: str) -> Parser:
@@ -217,7 +249,7 @@ def _environment(kinds: Any, kind: str, common: Parser, help: str, example: str)
         parents=[common],
         help=help,
         description=help,
-        epilog=f"example:\n  topomap generate {example}",
+        epilog=f"example:\n  topomap {example}",
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     return added
@@ -252,15 +284,11 @@ def _add_solve(group: Any) -> None:
         """\
   topomap solve instances/grid-3x3-snake.lp --planar --closed
   topomap solve instances/grid-3x4-paper.lp --optimal --json
-  topomap solve instances/grid-4x4-snake.lp --bound 16 --jobs 2 -o maps.txt""",
+  topomap solve instances/grid-4x4-snake.lp --bound 16 --jobs 2 -o maps.txt
+  topomap solve instances/grid-3x3-misread.lp --optimal --planar --noise 1""",
     )
     command.add_argument("instance", nargs="+", metavar="INSTANCE")
-    command.add_argument(
-        "--optimal",
-        action="store_true",
-        help="closed maps with consistent boundaries, fewest paths and places; "
-        "if there is none, the best so far: pending gateways allowed",
-    )
+    _add_optimal(command)
     command.add_argument("--limit", type=_number(int, 1), metavar="N", help="stop after N maps")
     command.add_argument(
         "--truth",
@@ -276,7 +304,24 @@ def _add_solve(group: Any) -> None:
     _add_query(command, PARTS)
     _add_crew(command, "; not with --optimal, --minimal or --genus")
     _add_encoding(command)
+    command.set_defaults(encoding=None)  # the plain one with --noise, else the fast one
     _add_resume(command)
+    command.add_argument(
+        "--noise",
+        type=_number(int, 0),
+        metavar="K",
+        help="allow up to K wrong views, as few as can be: gateways and landmarks missed or "
+        "imagined; by the plain encoding",
+    )
+
+
+def _add_optimal(command: Parser) -> None:
+    command.add_argument(
+        "--optimal",
+        action="store_true",
+        help="closed maps with consistent boundaries, fewest paths and places; "
+        "if there is none, the best so far: pending gateways allowed",
+    )
 
 
 def _add_encoding(command: Parser) -> None:
@@ -312,6 +357,46 @@ def _add_crew(command: Parser, but: str = "") -> None:
         "tcp://127.0.0.1:8786; they need this version of topomap (and here the extra: "
         "pip install 'topomap[dask]')",
     )
+
+
+def _add_ask(group: Any) -> None:
+    command = _command(
+        group,
+        "ask",
+        ask.ask,
+        "tell of each statement whether it holds in all maps that are consistent with an "
+        "exploration, in some or in none, with maps that show it",
+        f"""\
+  topomap ask instances/grid-4x4-snake.lp "same(3,12)" "places < 12" --planar --closed
+  topomap ask instances/grid-3x3-snake.lp "linked(3,2,12,0)" "not planar" --optimal --json
+
+{statements.VOCABULARY}""",
+    )
+    command.add_argument("instance", metavar="INSTANCE")
+    command.add_argument("statement", nargs="+", metavar="STATEMENT")
+    _add_optimal(command)
+    _add_query(command, PARTS)
+    _add_encoding(command)
+
+
+def _add_explain(group: Any) -> None:
+    command = _command(
+        group,
+        "explain",
+        explain.explain,
+        "tell why a statement about the maps is impossible, or certain, or why there is no map: "
+        "reasons none of which can be spared. (Of all maps, not of the optimal ones: that "
+        "another map is better is no reason of this kind)",
+        f"""\
+  topomap explain instances/grid-3x3-snake.lp "same(3,12)"
+  topomap explain instances/grid-4x4-snake.lp "not same(0,30)" --planar --bound 16
+  topomap explain instances/manhattan-tour20.lp --closed
+
+{statements.VOCABULARY}""",
+    )
+    command.add_argument("instance", metavar="INSTANCE")
+    command.add_argument("statement", nargs="?", metavar="STATEMENT")
+    _add_query(command, explain.DEMANDS)
 
 
 def _add_count(group: Any) -> None:
@@ -352,6 +437,12 @@ def _add_check(group: Any) -> None:
     )
     command.add_argument(
         "--truth", metavar="FILE", help="the real map (from generate --truth), for the key real"
+    )
+    command.add_argument(
+        "--noise",
+        type=_number(int, 0),
+        metavar="K",
+        help="a map may disbelieve K views (its key misread), and no more than it says itself",
     )
     _add_query(command, maps.DEMANDS, horizon=False)
 
@@ -522,6 +613,51 @@ def _add_figures(group: Any) -> None:
     )
 
 
+def _add_simulate(group: Any) -> None:
+    command = _command(
+        group,
+        "simulate",
+        simulating.simulate,
+        "let a robot explore an environment that it does not know, until it has one closed "
+        "optimal map, and hold that against the truth",
+        """\
+  topomap simulate grid 3 3
+  topomap simulate maze 4 4 --seed 2 --signs 0.3 --perpendicular
+  topomap simulate network city.graphml --slots 4 --north 29 --signs 0.3 --planar
+  topomap simulate list instances/worlds.txt""",
+    )
+    common = Parser(add_help=False)
+    add = common.add_argument
+    _add_start(add, "the smallest")
+    add("--seed", type=_number(int, 0), metavar="N", help="for signs and maze (default: 0)")
+    add(
+        "--steps",
+        type=_number(int, 0, MOST_STEPS),
+        metavar="N",
+        help="walk N steps at most (default: 20 for each way)",
+    )
+    add("--marker", action="store_true", help="it carries a marker, and may put it down")
+    add("--instance", metavar="FILE", help="also write what it did and saw, as an instance")
+    _add_asked(common, PRUNING, horizon=False)
+    add("--json", action="store_true", help="write JSON")
+    add("-o", "--output", metavar="FILE", help="file to write (default: stdout)")
+    kinds = _add_environments(command, common, "--signs 0.3")
+    help = "several of them, one a line of a file: the arguments of topomap simulate"
+    listed = kinds.add_parser(
+        "list",
+        help=help,
+        description=help,
+        epilog="example:\n  topomap simulate list instances/worlds.txt",
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    listed.set_defaults(parse=parse)
+    add = listed.add_argument
+    add("file", metavar="FILE")
+    add("--timeout", type=_number(float, 0.001), metavar="S", help="stop after S seconds")
+    add("--json", action="store_true", help="write JSON")
+    add("-o", "--output", metavar="FILE", help="file to write (default: stdout)")
+
+
 def _add_show(group: Any) -> None:
     command = _command(
         group,
@@ -564,3 +700,100 @@ def _add_import(group: Any) -> None:
     )
     command.add_argument("file", metavar="FILE.graphml|FILE.json")
     command.add_argument("-o", "--output", metavar="FILE", help="file to write (default: stdout)")
+
+
+def _add_follow(group: Any) -> None:
+    command = _command(
+        group,
+        "follow",
+        following.follow,
+        "follow an exploration as it happens: after each step the number of hypotheses, the best "
+        "maps, what has become certain, and what to do next",
+        """\
+  topomap follow walk.lp --planar
+  topomap follow instances/grid-3x3-snake.lp --no-wait --json
+  robot | topomap follow - --log walk.log
+
+lines: the facts of a step, as generate writes them: turn(1,0). view(1,0). view(1,2).
+  or JSON: {"slots": 4, "view": [0, 1]} first, then {"turn": 2, "view": [0, 2]}; each may have
+  "landmarks": ["a"], and "drop", "pick" or "marker": true. undo. or {"undo": 2} takes the last
+  steps back. Facts that a line adds to the last step amend it.
+
+what is certain: new(T), the place where the agent is after step T was not visited before;
+  same(T,U) and linked(T,S,U,R) as topomap ask --help has them. It stays certain.""",
+    )
+    add = command.add_argument
+    add(
+        "file",
+        nargs="?",
+        default="-",
+        metavar="FILE",
+        help="a file that grows, followed until Ctrl-C (default: standard input, to its end)",
+    )
+    add(
+        "--log",
+        metavar="FILE",
+        help="with standard input: write each line there before it is answered; if it has lines, "
+        "go on after them",
+    )
+    add("--planar", action="store_true", help=PARTS["planar"])
+    add("--bound", type=_number(int, 1), metavar="B", help="at most B places")
+    add("--marker", action="store_true", help="the agent carries a marker, for what to do next")
+    add(
+        "--count-limit",
+        type=_number(int, 1),
+        default=online.MOST,
+        metavar="N",
+        help="of more hypotheses say only that they are more (default: %(default)s)",
+    )
+    add("--timeout", type=_number(float, 0.001), metavar="S", help="at most S seconds a step")
+    add(
+        "--keep-going",
+        action="store_true",
+        help="tell of lines with a fault, and pass over them (status 0)",
+    )
+    add("--no-wait", dest="wait", action="store_false", help="end at the end of the file")
+    add("--json", action="store_true", help="a line of JSON for each step")
+
+
+def _add_explore(group: Any) -> None:
+    command = _command(
+        group,
+        "explore",
+        exploring.explore,
+        "say where to go next: the shortest further walk that tells the maps apart, or leaves the "
+        "fewest in the worst case; if there is none, to a pending gateway; or the proof that no "
+        "walk ever tells them",
+        """\
+  topomap explore instances/grid-4x4-snake.lp --bound 16
+  topomap generate grid 4 4 --route snake --truth truth.json -o grid.lp
+  topomap explore grid.lp --bound 16 --among optimal --among truth.json --marker
+  topomap explore grid.lp --bound 16 --among optimal --among truth.json --proof proof.json
+  topomap explore grid.lp --check proof.json
+  topomap explore grid.lp --bound 16 --facts | clingo encodings/explore.lp - -c n=3""",
+    )
+    add = command.add_argument
+    add("instance", metavar="INSTANCE")
+    add(
+        "--among",
+        action="append",
+        metavar="MAPS",
+        help="the maps that may be the real one: optimal (the best so far, where nothing is "
+        "closed), closed, perpendicular (and closed), or a file of maps of this instance; more "
+        "than once for all of them (default: optimal)",
+    )
+    add("--marker", action="store_true", help="the agent carries a marker, to be dropped once")
+    add(
+        "--steps",
+        type=_number(int, 1, 1000),
+        default=explore.STEPS,
+        metavar="N",
+        help="walks of at most N steps (default: %(default)s)",
+    )
+    add("--proof", metavar="FILE", help="write there why no walk tells maps apart, for --check")
+    what = command.add_mutually_exclusive_group()
+    what.add_argument("--check", metavar="FILE", help="check the proofs that --proof wrote there")
+    what.add_argument(
+        "--facts", action="store_true", help="print the maps as facts for encodings/explore.lp"
+    )
+    _add_query(command, PRUNING)

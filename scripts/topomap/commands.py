@@ -15,13 +15,14 @@ from typing import IO, Any
 
 from topomap import beyond, branching, environment, figure4, maps, network, search, share, solver
 from topomap.check import STEP_RULES, by_definition
+from topomap.environment import Environment
 from topomap.errors import DONE, INTERRUPTED, NO, PARTIAL, InputError, say
 from topomap.experience import LARGEST, Experience, read
 from topomap.family import expand
 from topomap.files import MOST_BYTES, output, text
 from topomap.generate import Instance, instance
 from topomap.journal import Journal
-from topomap.report import Report
+from topomap.report import Report, steps_json
 from topomap.share import ALONE, Crew
 from topomap.solver import (
     INTERRUPT,
@@ -52,8 +53,7 @@ def generate(args: argparse.Namespace) -> int:
         raise InputError(f"{target}: it cannot be both --output and --truth")
     with contextlib.ExitStack() as files:
         if args.truth:
-            at = [[step, *dstate] for step, dstate in enumerate(made.truth)]
-            truth = json.dumps({"maps": [{"at": at}], "complete": True})
+            truth = json.dumps({"maps": [{"at": steps_json(made.truth)}], "complete": True})
             files.enter_context(output(args.truth)).write(truth + "\n")
         if target or not args.json:
             files.enter_context(output(target)).write(made.text())
@@ -70,20 +70,28 @@ def generate(args: argparse.Namespace) -> int:
     return DONE
 
 
-def _instance(args: argparse.Namespace) -> Instance:
+def environment_of(args: argparse.Namespace) -> Environment:
+    """The environment that a call of ``generate`` or ``simulate`` names."""
     if args.kind == "network":
         world, warnings = network.load(args.file, args.slots, args.north)
         for warning in warnings:
             say(f"warning: {warning}")
     elif args.rows * args.columns > environment.MOST_PLACES:
         size = f"{args.rows} x {args.columns}"
-        raise InputError(f"topomap generate: {size}: more than {environment.MOST_PLACES} places")
+        raise InputError(
+            f"topomap {args.command}: {size}: more than {environment.MOST_PLACES} places"
+        )
     elif args.kind == "maze":
         world = environment.maze(args.rows, args.columns, args.thin, args.seed or 0)
     elif args.kind in ("hexagons", "triangles"):
         world = environment.lattice(args.kind, args.rows, args.columns)
     else:
         world = environment.grid(args.rows, args.columns, args.kind)
+    return world
+
+
+def _instance(args: argparse.Namespace) -> Instance:
+    world = environment_of(args)
     if args.route == "walk" and args.steps is None:
         raise InputError("topomap generate: --route walk needs --steps")
     return instance(
@@ -101,7 +109,7 @@ def _instance(args: argparse.Namespace) -> Instance:
 def _query(args: argparse.Namespace) -> Query:
     parts = frozenset(part for part in PARTS if getattr(args, part, False))
     encoding = getattr(args, "encoding", "fast")
-    return Query(parts, args.bound, args.horizon, encoding)
+    return Query(parts, args.bound, args.horizon, encoding, getattr(args, "noise", None))
 
 
 def _run(args: argparse.Namespace, *experiences: Experience) -> dict[str, Any]:
@@ -115,9 +123,10 @@ def _run(args: argparse.Namespace, *experiences: Experience) -> dict[str, Any]:
 
 def solve(args: argparse.Namespace) -> int:
     """Enumerate the maps of each instance."""
+    _with_noise(args)
     inputs = []
     for path in args.instance:
-        experience = read(path)
+        experience = read(path, args.noise is not None)
         truth = _truth(args.truth, experience, args.horizon) if args.truth else None
         inputs.append((path, experience, truth))
     run = _run(args, *(experience for _, experience, _ in inputs))
@@ -144,6 +153,27 @@ def solve(args: argparse.Namespace) -> int:
             out.write(f'], "complete": {json.dumps(complete)}}}\n')
         journal.complete = complete
     return max(statuses)
+
+
+def _with_noise(args: argparse.Namespace) -> None:
+    """Settle the encoding. Raises InputError if misreadings are allowed and something is asked
+    for that does not go with them."""
+    if args.noise is None:
+        args.encoding = args.encoding or "fast"
+        return
+    others = {
+        "--by search": args.by == "search",
+        "--jobs": (args.jobs or 1) > 1,
+        "--dask": args.dask,
+        "--resume": args.resume,
+        "--truth": args.truth,
+    }
+    for name, asked in others.items():
+        if asked:
+            raise InputError(f"topomap solve: --noise does not go with {name}")
+    if args.encoding == "fast":
+        say("topomap solve: --noise: the plain encoding is used, not the fast one")
+    args.encoding = "plain"
 
 
 def _solve_one(
@@ -268,8 +298,9 @@ def _truth(file: str, experience: Experience, horizon: int | None) -> Topologica
 
 def check(args: argparse.Namespace) -> int:
     """Check maps that anyone made, by rules and by definition."""
-    experience = read(args.instance)
     documents = maps.read(args.maps)
+    said = any(document.claims.get("noise") is not None for document in documents)
+    experience = read(args.instance, said or args.noise is not None)
     if len(documents) > 1:  # of several instances
         name = Path(args.instance).name
         documents = [d for d in documents if Path(str(d.claims.get("instance"))).name == name]
@@ -284,7 +315,7 @@ def check(args: argparse.Namespace) -> int:
     with output(args.output) as out:
         try:
             with Watch(args.timeout) as watch:
-                for verdict in maps.verdicts(experience, documents, demands, truth):
+                for verdict in maps.verdicts(experience, documents, demands, truth, args.noise):
                     checked.append(verdict)
                     watch.found += 1
                     if len(checked) < number:

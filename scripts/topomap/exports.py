@@ -16,7 +16,7 @@ from topomap import maps
 from topomap.errors import InputError, printable
 from topomap.files import data
 from topomap.network import read_graphml
-from topomap.report import map_json
+from topomap.report import map_json, steps_json
 from topomap.scenes import Scene, of_document
 from topomap.topology import Gateway, Place, gid
 
@@ -53,7 +53,7 @@ def graph_of(scene: Scene) -> "nx.MultiGraph[int]":
         kind=scene.kind,
         slots=world.slots,
         genus=world.genus(),
-        at=[[step, place, slot] for step, (place, slot) in enumerate(scene.at)],
+        at=steps_json(scene.at),
     )
     for place, star in world.stars.items():
         signs = sorted(world.landmarks.get(place, ()))

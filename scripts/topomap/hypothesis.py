@@ -13,9 +13,10 @@ from topomap.experience import DState, Experience
 from topomap.topology import TopologicalMap
 
 Face = tuple[int, ...]
-# What refuses an arrival: another view is seen there, or other landmarks; a place would be on a
-# path twice, or the path circular; and what was asked for.
-RULES = ("view", "landmark", "twice", "circular", "planarity", "perpendicular", "bound")
+# What refuses an arrival: another view is seen there, or other landmarks; the marker is seen and
+# does not lie there, or lies there and is not seen; a place would be on a path twice, or the path
+# circular; and what was asked for.
+RULES = ("view", "landmark", "marker", "twice", "circular", "planarity", "perpendicular", "bound")
 
 
 class Link(NamedTuple):
@@ -61,6 +62,7 @@ class Hypothesis:
             for slot in view:
                 star = frozenset((other - slot) % self.slots for other in view)
                 self.views[first + slot] = numbers.setdefault((star, landmarks), len(numbers))
+        self.marker = experience.marker()
         self.at = [0]
         self.links: dict[int, int] = {}
         self.faces: tuple[Face, ...] = (self.stars[0],)
@@ -144,18 +146,23 @@ class Hypothesis:
         seen = self.views[(self.steps + 1) * self.slots]
         return [gateway for gateway in gateways if self.views[gateway] == seen]
 
+    def marked(self, gateway: int) -> bool:
+        """Whether the next step sees of the marker at this gateway what it does see."""
+        told = self.marker[self.steps + 1]
+        return told is None or told[1] == (gateway // self.slots == self.at[told[0]] // self.slots)
+
     def children(self) -> list[int]:
         """Where the next step can arrive: the gateways of known places, and gateway 0 of
         a new one. Where the link is known, its other end, if the view is the predicted one.
         """
         out = self.out()
         if out in self.links:
-            return self.fitting((self.links[out],))
+            return [gateway for gateway in self.fitting((self.links[out],)) if self.marked(gateway)]
         near = self.face(out) if self.planar else tuple(g for face in self.faces for g in face)
         arrivals = [g for g in self.fitting(near) if g != out and self._joins(out, g)]
         if self.bound is None or self.places < self.bound:
             arrivals.append((self.steps + 1) * self.slots)
-        return arrivals
+        return [gateway for gateway in arrivals if self.marked(gateway)]
 
     def tried(self) -> Iterator[tuple[int, str | None]]:
         """Where the next step might arrive: at the other end of its link; or if that is not
@@ -176,14 +183,15 @@ class Hypothesis:
             if rule in (None, "perpendicular") and self.planar and gateway not in face:
                 rule = "planarity"
             yield gateway, rule
+        new = (self.steps + 1) * self.slots
         full = self.bound is not None and self.places >= self.bound
-        yield (self.steps + 1) * self.slots, "bound" if full else None
+        yield new, "marker" if not self.marked(new) else "bound" if full else None
 
     def _mistaken(self, gateway: int) -> str | None:
         """The rule by which the next step, which sees something, did not arrive at a gateway."""
         step, (place, slot) = self.steps + 1, divmod(gateway, self.slots)
         if self.views[gateway] == self.views[step * self.slots]:
-            return None
+            return None if self.marked(gateway) else "marker"
         star = {(other - slot) % self.slots for other in self.experience.views[place]}
         return "landmark" if star == self.experience.views[step] else "view"
 

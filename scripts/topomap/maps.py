@@ -10,11 +10,14 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
+from clingo import parse_term
+
+from topomap import words
 from topomap.check import STEP_RULES, At, Grown, Violation, by_definition, by_rules
 from topomap.errors import InputError
-from topomap.experience import LARGEST, Experience
+from topomap.experience import LARGEST, Experience, Misread
 from topomap.files import text
-from topomap.solver import PARTS
+from topomap.solver import PARTS, misreadings
 from topomap.topology import Gateway, TopologicalMap
 
 MOST_BYTES = 2**32
@@ -127,6 +130,7 @@ CLAIMS: dict[str, Callable[[Any], bool]] = {
     "bound": _is_number_or_none,
     "horizon": _is_number_or_none,
     "optimal": _is_truth,
+    "noise": lambda value: value is None or (_is_number(value) and value >= 0),
     "kind": lambda kind: kind is None or kind in KINDS,
     "count": _is_number,
     "cost": _is_list_of(_is_number),
@@ -153,11 +157,15 @@ def _of_clingo(path: str, data: dict[str, Any]) -> Document:
             at = tuple(sorted(tuple(map(int, match.groups())) for match in atoms if match))
             if not all(atoms) or not _is_at([list(dstate) for dstate in at]):
                 raise ValueError
+            wrong = [parse_term(atom) for atom in witness["Value"] if atom[:8] == "misread("]
+            misread = misreadings(atom.arguments for atom in wrong)
             # Under optimisation clingo gives the first of the best maps twice.
-            if "Costs" not in witness or at not in seen:
-                maps.append({"at": at})
-            seen.add(at)
-    except (LookupError, TypeError, ValueError, AttributeError):
+            if "Costs" not in witness or (at, misread) not in seen:
+                kinds = ("gateway" if isinstance(what, int) else "landmark" for _, what in misread)
+                said = [{"step": t, k: what} for k, (t, what) in zip(kinds, misread, strict=True)]
+                maps.append({"at": at, **({"misread": said} if said else {})})
+            seen.add((at, misread))
+    except (LookupError, TypeError, ValueError, AttributeError, RuntimeError):
         raise InputError(f"{path}: not what clingo --outf=2 writes") from None
     return Document(path, maps)
 
@@ -177,27 +185,39 @@ class Verdict:
 
 
 def verdicts(
-    experience: Experience,
+    seen: Experience,
     documents: list[Document],
     demands: Sequence[str],
     truth: TopologicalMap | None,
+    noise: int | None = None,
 ) -> Iterator[Verdict]:
-    """A verdict on each map, by ``check.lp`` and by definition. Raises InputError if one is
-    much longer than the experience."""
+    """A verdict on each map, by ``check.lp`` and by definition, of what was seen but for what
+    the map says was misread: after ``noise`` steps at most, and as many as its document allows.
+    Raises InputError if one is much longer than the experience."""
     for document in documents:
         for number, entry in enumerate(document.maps, 1):
-            if len(entry["at"]) > LONGER * (experience.steps + 1):
-                fault = f"at has {len(entry['at'])} dstates, the instance {experience.steps + 1}"
+            if len(entry["at"]) > LONGER * (seen.steps + 1):
+                fault = f"at has {len(entry['at'])} dstates, the instance {seen.steps + 1}"
                 raise InputError(f"{document.where}: map {number}: {fault}")
     for document in documents:
         wanted = sorted({*demands, *document.demands()})
-        numbers: dict[At, int] = {}
+        numbers: dict[tuple[At, frozenset[Misread]], int] = {}
+        bounds = [k for k in (noise, document.claims.get("noise")) if k is not None]
         for number, entry in enumerate(document.maps, 1):
             at = tuple(sorted((step, place, slot) for step, place, slot in entry["at"]))
-            rules = by_rules(experience, at, wanted)
-            definition = by_definition(experience, at, wanted)
+            rules: set[Violation] = set()
+            definition: set[Violation] = set()
             found = []
-            if not STEP_RULES & {rule for rule, _ in rules | definition}:
+            try:
+                misread = _misread(seen, entry.get("misread", []))
+                experience = seen.corrected(misread)
+                found = list(_mistaken(experience, misread, len(at), min(bounds, default=None)))
+            except (LookupError, TypeError, ValueError):
+                misread, found = frozenset(), ["misread: not what topomap solve --json writes"]
+            if not found:
+                rules = by_rules(experience, at, wanted)
+                definition = by_definition(experience, at, wanted)
+            if not found and not STEP_RULES & {rule for rule, _ in rules | definition}:
                 found = list(faults(experience, document, entry, at))
                 if rules != definition:
                     found.append("check.lp and the check by definition do not agree on it")
@@ -205,16 +225,52 @@ def verdicts(
                     real = experience.map_of(tuple((p, s) for _, p, s in at)).isomorphic(truth)
                     if real != entry["real"]:
                         found.append(f"real: it is {'not ' * (not real)}the real map")
-            if numbers.setdefault(at, number) != number:
-                found.append(f"the same as map {numbers[at]}")
+            if numbers.setdefault((at, misread), number) != number:
+                found.append(f"the same as map {numbers[at, misread]}")
             violations = sorted(rules | definition, key=lambda violation: violation[::-1])
             said = document.claims.get("count", len(document.maps))
             if number == 1 and said != len(document.maps):
                 found.append(f"count is {said}, there are {len(document.maps)} maps")
             if truth is None and "real" in entry:
                 found.append("real: only --truth can tell")
-            short = len(at) <= experience.steps
+            short = len(at) <= seen.steps
             yield Verdict(f"{document.where}: map {number}", violations, found, short)
+
+
+def _misread(seen: Experience, said: Any) -> frozenset[Misread]:
+    """What a map says was misread. Raises an error where it cannot be."""
+    signs = frozenset[str]().union(*seen.landmarks)
+    found: set[Misread] = set()
+    for one in _list(said):
+        what = one["gateway"] if "gateway" in one else one["landmark"]
+        step, gateway = one["step"], "gateway" in one
+        known = range(seen.slots) if gateway else signs
+        views = seen.views if gateway else seen.landmarks
+        if not (_is_number(step) and step >= 0 and what in known) or isinstance(what, bool | float):
+            raise ValueError
+        if one.keys() - {"seen"} != {"step", "gateway" if gateway else "landmark"}:
+            raise ValueError
+        if "seen" in one and one["seen"] is not (what in views[step]):
+            raise ValueError
+        found.add((step, what))
+    if len(found) < len(said):
+        raise ValueError
+    return frozenset(found)
+
+
+def _mistaken(
+    corrected: Experience, misread: frozenset[Misread], steps: int, most: int | None
+) -> Iterator[str]:
+    """What is wrong with what is said to be misread, in a map of so many steps."""
+    wrong = {step for step, _ in misread}
+    if wrong and most is None:
+        yield "misread: it is not said how many views may be wrong (noise)"
+    elif len(wrong) > (most or 0):
+        yield f"misread: {words.number(len(wrong), 'view')}, more than {most}"
+    if late := [step for step in wrong if step >= steps]:
+        yield f"misread: step {min(late)} is not in at"
+    if left := corrected.cut(max(0, steps - 1)).misled():
+        yield f"misread: the agent still stands at no gateway or leaves by none, step {left[0]}"
 
 
 def faults(
@@ -223,7 +279,7 @@ def faults(
     """What is said of a map, by itself or with the others, and does not follow from ``at``."""
     grown = Grown(experience, {step: (place, slot) for step, place, slot in at}, len(at) - 1)
     for key, said in entry.items():
-        if key in ("at", "real"):
+        if key in ("at", "real", "misread"):
             continue
         if key not in KEYS:
             yield f"{key}: no such key of a map"
@@ -240,8 +296,15 @@ def faults(
         experience.steps if last is None else min(last, experience.steps)
     ):
         yield f"horizon: at ends after step {grown.step}"
-    if "cost" in claims and claims["cost"] != _cost(grown, claims):
-        yield f"cost: it is {_cost(grown, claims)}"
+    cost = _noise(entry, claims) + _cost(grown, claims)
+    if "cost" in claims and claims["cost"] != cost:
+        yield f"cost: it is {cost}"
+
+
+def _noise(entry: dict[str, Any], claims: dict[str, Any]) -> list[int]:
+    """How many views are wrong, and how much was misread, if that was minimised."""
+    misread = entry.get("misread", [])
+    return [] if claims.get("noise") is None else [len({m["step"] for m in misread}), len(misread)]
 
 
 def _cost(grown: Grown, claims: dict[str, Any]) -> list[int]:

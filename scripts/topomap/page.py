@@ -255,6 +255,7 @@ def _about(args: argparse.Namespace, number: int, about: Exploration) -> dict[st
         "last": last,
         "slots": seen.slots,
         "signs": len(frozenset().union(*seen.landmarks)),
+        "marked": bool(seen.drops),
         "faults": about.faults,
         "asked": [PARTS[part] for part in sorted(about.query.parts)]
         + ([f"at most {words.number(about.query.places, 'place')}"] if about.query.places else []),
@@ -268,7 +269,7 @@ def _about(args: argparse.Namespace, number: int, about: Exploration) -> dict[st
             for found, counted in zip(about.steps, about.counted, strict=True)
         ),
         "rules": {rule: words.RULES[rule] for rule in rules},
-        "enders": [rule for rule in rules if rule in ("view", "landmark", "bound")],
+        "enders": [rule for rule in rules if rule in ("view", "landmark", "marker", "bound")],
         "refused": [
             (step, about.steps[step - 1].alive, about.steps[step]) for step in range(1, last + 1)
         ],
@@ -297,6 +298,7 @@ def _log_line(seen: Experience, step: int) -> dict[str, Any]:
         "view": view,
         "glyph": Markup(svg.view(view, seen.slots, ways)) if drawn else "",
         "landmarks": ", ".join(sorted(seen.landmarks[step])),
+        "marker": words.marker(seen, step),
     }
 
 

@@ -2,7 +2,8 @@
 one grounds over what is left.
 
 All that is found, but for ``rare``, holds in every map that is asked for, so the answers stay
-the same. ``encodings/fast/phases/`` has the programs:
+the same: each program asks for less than they must have. (Of the marker those know nothing that
+do not load the theory.) ``encodings/fast/phases/`` has the programs:
 
 1. ``visits.lp``: which visits can be of one place, by pairs; settled while grounding.
 2. for closed maps with at most so many places: the theory without planarity, but with

@@ -107,6 +107,7 @@ def in_force(query: Query, experience: Experience) -> list[str]:
         "perpendicular": "perpendicular" not in query.parts,
         "bound": query.places is None,
         "landmark": not any(experience.landmarks),
+        "marker": not experience.drops,
     }
     return [rule for rule in RULES if not never.get(rule)]
 

@@ -4,9 +4,15 @@ import json
 from collections.abc import Sequence
 from typing import IO, Any
 
-from topomap.experience import Experience
+from topomap import words
+from topomap.experience import Experience, Misread
 from topomap.solver import Found, Query
 from topomap.topology import Gateway, TopologicalMap
+
+
+def steps_json(at: Sequence[Gateway]) -> list[list[int]]:
+    """The dstate after each step, ``[[T,P,S], ...]``."""
+    return [[step, place, slot] for step, (place, slot) in enumerate(at)]
 
 
 def map_json(world: TopologicalMap, at: Sequence[Gateway]) -> dict[str, Any]:
@@ -15,7 +21,7 @@ def map_json(world: TopologicalMap, at: Sequence[Gateway]) -> dict[str, Any]:
     of its heading; a face the gateways its walk leaves by (the paper's next); ``dstate``
     where the agent is."""
     return {
-        "at": [[step, place, slot] for step, (place, slot) in enumerate(at)],
+        "at": steps_json(at),
         "places": [
             {"place": place, "gateways": sorted(star), "landmarks": sorted(world.landmarks[place])}
             for place, star in world.stars.items()
@@ -29,11 +35,24 @@ def map_json(world: TopologicalMap, at: Sequence[Gateway]) -> dict[str, Any]:
     }
 
 
+def misread_json(experience: Experience, misread: Sequence[Misread]) -> list[dict[str, Any]]:
+    """What was misread, as JSON: the step, the gateway or the landmark, and whether it was seen,
+    and so is imagined, or was missed."""
+    return [
+        {"step": step, "gateway": what, "seen": what in experience.views[step]}
+        if isinstance(what, int)
+        else {"step": step, "landmark": what, "seen": what in experience.landmarks[step]}
+        for step, what in misread
+    ]
+
+
 def map_line(experience: Experience, found: Found) -> str:
-    """A hypothesis in one line: its size, and the dstate after each step."""
+    """A hypothesis in one line: what it disbelieves, its size, and the dstate after each step.
+    The experience is the corrected one."""
     world = experience.map_of(found.at)
     pending = sum(map(len, world.stars.values())) - len(world.links)
     return (
+        f"{words.disbelieved(experience, found.misread)}"
         f"places {len(world.stars)}, links {len(world.links) // 2}, paths {len(world.paths())}, "
         f"genus {world.genus()}, pending {pending}: "
         + " ".join(f"{place}.{slot}" for place, slot in found.at)
@@ -56,6 +75,7 @@ class Report:
         self.out, self.as_json = out, as_json
         self.experience, self.truth = experience, truth
         self.count = self.real = 0
+        self.noisy = query.noise is not None
         self.last = Found((), kind or query.kind)
         if as_json:
             head = {
@@ -66,24 +86,29 @@ class Report:
                 "horizon": query.horizon,
                 "optimal": kind == "optimal",
             }
+            if query.noise is not None:
+                head["noise"] = query.noise
             out.write(json.dumps(head)[:-1] + ', "maps": [')
 
     def add(self, found: Found) -> None:
         """Write one map."""
         self.count += 1
         self.last = found
+        corrected = self.experience.corrected(found.misread)
         real = False
         if self.truth:
-            real = self.experience.map_of(found.at).isomorphic(self.truth)
+            real = corrected.map_of(found.at).isomorphic(self.truth)
             self.real += real
         if self.as_json:
-            answer = map_json(self.experience.map_of(found.at), found.at)
+            answer = map_json(corrected.map_of(found.at), found.at)
+            if self.noisy:
+                answer["misread"] = misread_json(self.experience, found.misread)
             if self.truth:
                 answer["real"] = real
             self.out.write((",\n" if self.count > 1 else "\n") + json.dumps(answer))
         else:
             mark = " (the real map)" if real else ""
-            self.out.write(f"map {self.count}{mark}: {map_line(self.experience, found)}\n")
+            self.out.write(f"map {self.count}{mark}: {map_line(corrected, found)}\n")
 
     def end(self, fault: str | None, nodes: int | None = None) -> None:
         """Write what the maps are, and whether they are all; ``nodes`` were searched."""

@@ -15,7 +15,7 @@ from topomap.experience import LARGEST, MOST_SLOTS, Experience, parse
 from topomap.files import text
 from topomap.solver import MEMORY, Found, Query, Stopped, Watch
 from topomap.topology import Gateway, TopologicalMap
-from topomap.words import short
+from topomap.words import markers, short
 
 MOST_PLACES = 1000  # in a picture
 
@@ -25,7 +25,8 @@ class Scene:
     """A map, and the dstate after each step of the route in it, from step 0 (or none).
 
     ``name`` says where it is from; ``number`` of ``many`` such maps, which are all if ``whole``;
-    ``kind`` what they are; ``caption`` is a title instead of these.
+    ``kind`` what they are; ``caption`` is a title instead of these. ``marker`` says where the
+    marker was put down, seen and taken up, if it was.
     """
 
     world: TopologicalMap
@@ -36,6 +37,7 @@ class Scene:
     kind: str = ""
     caption: str = ""
     whole: bool = True
+    marker: str = ""
 
     @property
     def title(self) -> str:
@@ -105,7 +107,11 @@ def best(
     found.sort(key=lambda one: one.at)
     kinds = [one.kind if one.proved else "not proved to be best" for one in found]
     return [
-        Scene(experience.map_of(one.at), one.at, name, number, len(found), kind, whole=not fault)
+        Scene(
+            *(experience.map_of(one.at), one.at, name, number, len(found), kind),
+            whole=not fault,
+            marker=markers(experience, one.at),
+        )
         for number, (one, kind) in enumerate(zip(found, kinds, strict=True), 1)
     ], fault
 

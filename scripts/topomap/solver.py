@@ -16,7 +16,8 @@ import time
 import weakref
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from functools import cache
+from functools import cache, partial
+from operator import itemgetter
 from pathlib import Path
 from typing import Any, ClassVar, TypeVar
 
@@ -25,7 +26,7 @@ from tqdm import tqdm
 
 from topomap import __version__, phases
 from topomap.errors import InputError
-from topomap.experience import DState, Experience
+from topomap.experience import DState, Experience, Misread
 
 ENCODINGS = Path(__file__).resolve().parents[2] / "encodings"
 PARTS = {
@@ -58,21 +59,23 @@ class Stopped(Exception):
 @dataclass(frozen=True)
 class Query:
     """Which hypotheses are asked for: the parts of the theory that are to hold, the
-    most places, and the last step that counts; and the encoding that is to give them."""
+    most places, and the last step that counts; the encoding that is to give them; and how many
+    views may be wrong, which goes with the plain encoding."""
 
     parts: frozenset[str] = frozenset()
     places: int | None = None
     horizon: int | None = None
     encoding: str = "fast"
+    noise: int | None = None
 
     @property
     def optimizes(self) -> bool:
-        return bool(self.parts & OPTIMIZING)
+        return bool(self.parts & OPTIMIZING) or self.noise is not None
 
     @property
     def kind(self) -> str:
         """What the answers are."""
-        return "best" if self.optimizes else "consistent"
+        return "best" if self.parts & OPTIMIZING else "consistent"
 
     def having(self, *parts: str) -> "Query":
         """The query with more parts."""
@@ -89,6 +92,9 @@ class Query:
         if self.places is not None:
             files.append("bound")
             arguments += ["-c", f"places={self.places}"]
+        if self.noise is not None:
+            files.append("noise")
+            arguments += ["-c", f"noise={self.noise}"]
         if self.horizon is not None:
             arguments += ["-c", f"horizon={self.horizon}"]
         control = clingo.Control(arguments)
@@ -161,13 +167,14 @@ class Watch:
 
 
 class Program:
-    """A query's program, grounded when it is first solved."""
+    """A query's program, with more facts, grounded when it is first solved."""
 
-    def __init__(self, experience: Experience, query: Query):
+    def __init__(self, experience: Experience, query: Query, facts: str = ""):
         self.asked = experience, query
+        self.facts = facts
         self._phased = query.encoding == "fast" and phases.serve(experience, query)
         how = phases.program(experience, query) if self._phased else ()
-        self.control = query.control(experience.facts(), *how)
+        self.control = query.control(experience.facts() + facts, *how)
         self._grounded = self._interrupted = False
         self._solved = self.control  # now or next
         self.say: Callable[[str], None] = lambda _: None
@@ -177,7 +184,7 @@ class Program:
         cube: Cube,
         more: Sequence[tuple[clingo.Symbol, bool]] = (),
         on_model: Callable[[clingo.Model], bool] | None = None,
-    ) -> None:
+    ) -> clingo.SolveResult:
         """Solve it, with the hypotheses that begin with a cube as the only ones."""
         if not self._grounded:
             if self._phased:
@@ -189,7 +196,7 @@ class Program:
                     self.control.configuration.solver.heuristic = "Domain"  # type: ignore[union-attr]
             self.control.ground()
             self._grounded = True
-        self.control.solve([*_assumed(cube), *more], on_model=on_model)
+        return self.control.solve([*_assumed(cube), *more], on_model=on_model)
 
     def _heed(self, control: clingo.Control) -> None:
         self._solved = control
@@ -229,14 +236,14 @@ def forget() -> None:
     _last.program = None
 
 
-def _program(experience: Experience, query: Query) -> Program:
+def _program(experience: Experience, query: Query, facts: str = "") -> Program:
     """The program of a query: the one that was kept, or a new one."""
     _prepare()
     program, _last.program = _last.program, None
-    if program is None or program.asked != (experience, query):
+    if program is None or (*program.asked, program.facts) != (experience, query, facts):
         program = None  # its memory is free before there is another
         try:
-            program = Program(experience, query)
+            program = Program(experience, query, facts)
         except MemoryError:
             raise Stopped(MEMORY) from None
     return program
@@ -349,6 +356,19 @@ def _in_thread(
         over.wait(timeout=0.5)
 
 
+def calls(
+    experience: Experience,
+    query: Query,
+    facts: str,
+    watch: Watch,
+    work: Callable[[Program, Callable[[Any], bool]], None],
+) -> Iterator[Any]:
+    """What ``work`` puts, which solves a query's program with these facts as often as it likes.
+    Raises Stopped at the time limit, or out of memory."""
+    program = _program(experience, query, facts)
+    return _in_thread(program, watch, partial(work, program))
+
+
 def answers(
     experience: Experience,
     query: Query,
@@ -419,12 +439,25 @@ def _prepare() -> None:
 @dataclass(frozen=True)
 class Found:
     """A hypothesis: the dstate after each step, of what kind it is, and if the query
-    minimises, its costs, most important first, and whether they are proved least."""
+    minimises, its costs, most important first, and whether they are proved least; and what
+    was misread."""
 
     at: tuple[DState, ...]
     kind: str
     cost: tuple[int, ...] = ()
     proved: bool = True
+    misread: tuple[Misread, ...] = ()
+
+
+def misreadings(terms: Iterable[Sequence[clingo.Symbol]]) -> tuple[Misread, ...]:
+    """What the atoms ``misread/2`` with these terms say, in order."""
+    gateways, landmarks = [], []
+    for step, what in terms:
+        if what.name == "gateway":
+            gateways.append((step.number, what.arguments[0].number))
+        else:
+            landmarks.append((step.number, str(what.arguments[0])))
+    return tuple(sorted([*sorted(gateways), *sorted(landmarks)], key=itemgetter(0)))
 
 
 def hypotheses(
@@ -439,10 +472,13 @@ def hypotheses(
     that begin with the first of them, then a None, and so on."""
 
     def read(model: clingo.Model) -> Found:
-        facts = sorted([a.number for a in fact.arguments] for fact in model.symbols(shown=True))
+        shown = [(fact.name, fact.arguments) for fact in model.symbols(shown=True)]
+        facts = sorted([a.number for a in terms] for name, terms in shown if name == "at")
         at = tuple((place, slot) for _, place, slot in facts)
         if query.optimizes:
-            return Found(at, kind or query.kind, tuple(model.cost), model.optimality_proven)
+            misread = misreadings(terms for name, terms in shown if name == "misread")
+            cost = tuple(model.cost)
+            return Found(at, kind or query.kind, cost, model.optimality_proven, misread)
         return Found(at, kind or query.kind)
 
     return answers(experience, query, watch, read, cubes)
@@ -457,9 +493,21 @@ def best(
     """The best maps (semantics: "optimal" and "best so far"), as ``hypotheses`` gives them.
 
     ``optimal``: closed, with consistent boundaries, fewest paths, then fewest places;
-    where there is none, ``best so far``: the same, pending gateways allowed.
+    where there is none, ``best so far``: the same, pending gateways allowed. If views may be
+    wrong, maps that disbelieve more than another one are neither.
     """
-    optimal = way(experience, query.having("closed", "boundary", "minimal"), watch, "optimal")
+    least: tuple[int, ...] = ()
+    if query.noise is not None:
+        maps = way(experience, query.having("boundary"), watch)
+        cheapest = next((found for found in maps if found and found.proved), None)
+        if cheapest is None:
+            return
+        least = cheapest.cost[:2]
+        query = replace(query, noise=least[0])
+    optimal = filter(
+        lambda found: found and found.cost[: len(least)] == least,
+        way(experience, query.having("closed", "boundary", "minimal"), watch, "optimal"),
+    )
     first = next(optimal, None)
     if first is not None:
         yield first

@@ -348,3 +348,5 @@ def words(scene: Scene, laid: Layout, letters: dict[Gateway, str]) -> Iterator[s
     signs = ((place, sorted(world.landmarks.get(place, ()))) for place in world.stars)
     told = [f"{label(place)}: {', '.join(those)}" for place, those in signs if those]
     yield from (f"landmarks at {line}" for line in told)
+    if scene.marker:
+        yield f"the marker: {scene.marker}"

@@ -4,7 +4,7 @@ import re
 from collections.abc import Collection, Mapping, Sequence
 
 from topomap.errors import printable
-from topomap.experience import Experience
+from topomap.experience import Experience, Misread
 from topomap.topology import Gateway, gid
 
 MOST = 24  # gateways of a view that are told one by one
@@ -12,6 +12,7 @@ LONGEST = 16  # letters of the landmarks of a place, in a picture
 RULES = {
     "view": "another view is seen there",
     "landmark": "other landmarks are seen there",
+    "marker": "the marker is seen elsewhere, or lies there and is not seen",
     "twice": "a place would be on a path twice",
     "circular": "a path would be circular",
     "planarity": "the gateways are not on one face",
@@ -60,6 +61,40 @@ def view(experience: Experience, step: int) -> str:
     if len(seen) > MOST:
         words.append(f"{len(seen) - MOST:,} more")
     return f"{number(len(seen), 'way')}: {', '.join(words)}"
+
+
+def marker(experience: Experience, step: int) -> str:
+    """What is seen of the marker after a step, and what is done with it."""
+    told = [
+        word
+        for word, steps in (
+            ("seen", experience.markers - experience.picks - experience.drops),
+            ("taken up", experience.picks),
+            ("put down", experience.drops),
+        )
+        if step in steps
+    ]
+    return ", ".join(told)
+
+
+def markers(experience: Experience, at: Sequence[Gateway]) -> str:
+    """The same of a map's steps, with the places."""
+    told = ((step, marker(experience, step), place) for step, (place, _) in enumerate(at))
+    return "; ".join(
+        f"{what} at place {place} after step {step}" for step, what, place in told if what
+    )
+
+
+def disbelieved(experience: Experience, misread: Sequence[Misread]) -> str:
+    """What was misread, step by step; the experience is the corrected one."""
+    told: dict[int, list[str]] = {}
+    for step, what in misread:
+        gateway = isinstance(what, int)
+        there = what in (experience.views if gateway else experience.landmarks)[step]
+        kind = "missed" if there else "imagined"
+        told.setdefault(step, []).append(f"{'gateway' if gateway else 'landmark'} {what} {kind}")
+    steps = [f"step {step} ({', '.join(what)})" for step, what in told.items()]
+    return f"disbelieves {', '.join(steps)}; " if steps else ""
 
 
 def refused(arrivals: Mapping[str, Sequence[Gateway]], new: int, most: int = 6) -> str:

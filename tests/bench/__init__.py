@@ -7,6 +7,7 @@
 ``task``        one measurement, in a process of its own: the ways
 ``measure``     rows by ways: repetitions, limits, verdicts, ratios
 ``growth``      curves: exponents, and the picture
+``online``      what a step costs a follower; docs/online.md, a command of its own
 ``memory``      memory while very many maps go to a file
 ``report``      docs/benchmark.md
 ``__main__``    the command

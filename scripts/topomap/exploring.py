@@ -1,0 +1,370 @@
+"""What the subcommand ``explore`` does: the next walk in words, and proofs to be checked."""
+
+import argparse
+import json
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import IO, Any
+
+from topomap import bisimulation, check, files, maps, scenes, solver, words
+from topomap.bisimulation import Chart, Pair
+from topomap.commands import exit_status
+from topomap.errors import NO, InputError, printable, say
+from topomap.experience import LARGEST, DState, Experience, read
+from topomap.explore import Plan, Prediction, Untold, plan, standing
+from topomap.report import steps_json
+from topomap.solver import MEMORY, PARTS, Query, Stopped, Watch
+from topomap.topology import gid
+
+At = tuple[DState, ...]
+KINDS = {
+    "optimal": (),
+    "closed": ("closed",),
+    "perpendicular": ("closed", "perpendicular"),
+}  # what --among may say, and the parts that such maps have; of optimal ones see scenes.best
+MOST_GROUPS, MOST_PAIRS, LONGEST = 6, 12, 24  # that are told in words
+FAULTS = {
+    "steps": "no walk of at most {steps} steps does better",
+    "effort": "longer walks may do better",
+    "maps": "not all of the maps were looked at when the walk was chosen",
+}
+
+
+@dataclass(frozen=True)
+class Asked:
+    """A map in question: the dstate after each step, and what it is."""
+
+    at: At
+    of: str
+
+
+def explore(args: argparse.Namespace) -> int:
+    """Say where to go next."""
+    whole = read(args.instance)
+    experience = whole.cut(LARGEST if args.horizon is None else args.horizon)
+    if args.proof and args.output and Path(args.proof).resolve() == Path(args.output).resolve():
+        raise InputError(f"{args.proof}: it cannot be both --output and --proof")
+    if args.check:
+        return _check(args, experience)
+    with (
+        files.output(args.output) as out,
+        Watch(args.timeout) as watch,
+    ):
+        among, fault = _among(args, whole, experience, watch)
+        if not among:
+            say(f"{args.instance}: {fault or 'no such map is consistent with it'}")
+            if args.json:
+                out.write(json.dumps({"maps": [], "complete": not fault, "fault": fault}) + "\n")
+            return exit_status(fault, False)
+        if args.facts:
+            out.write(_facts(experience, among) + "carried.\n" * args.marker)
+            return exit_status(fault, True)
+        standings = [standing(experience, one.at) for one in among]
+        watch.title("the next walk")
+        made = plan(experience.slots, standings, watch, marker=args.marker, steps=args.steps)
+        fault = fault or made.fault
+        if args.proof:
+            with files.output(args.proof) as file:
+                json.dump(_proof(args, experience, among, made, fault), file)
+                file.write("\n")
+        if args.json:
+            json.dump(_json(args, experience, among, made, fault), out)
+            out.write("\n")
+        else:
+            _write(out, args, experience, among, made, fault)
+    return exit_status(fault, made.kind != "bisimilar")
+
+
+def _among(
+    args: argparse.Namespace, whole: Experience, experience: Experience, watch: Watch
+) -> tuple[list[Asked], str | None]:
+    """The maps in question, each once, and why they may not be all, if so."""
+    parts = frozenset(part for part in PARTS if getattr(args, part, False))
+    query = Query(parts, args.bound, args.horizon)
+    found: dict[At, str] = {}
+    fault = None
+    for name in args.among or ["optimal"]:
+        if name not in KINDS:
+            for at in _of_file(name, whole, experience, watch):
+                found.setdefault(at, name)
+        elif fault is None:
+            watch.title(f"{name} maps")
+            try:
+                if name == "optimal":
+                    best, fault = scenes.best(whole, args.instance, query, watch)
+                    for scene in best:
+                        found.setdefault(tuple(scene.at), scene.kind)
+                    continue
+                for one in solver.hypotheses(whole, query.having(*KINDS[name]), watch):
+                    if one is not None:
+                        found.setdefault(one.at, name)
+            except (Stopped, MemoryError) as stop:
+                fault = str(stop) or MEMORY
+    return [Asked(at, of) for at, of in sorted(found.items())], fault
+
+
+def _of_file(path: str, whole: Experience, experience: Experience, watch: Watch) -> Iterator[At]:
+    """The maps of a file, cut to the experience. Raises InputError if one is none of its
+    hypotheses."""
+    documents = maps.read(path)
+    if not any(document.maps for document in documents):
+        raise InputError(f"{path}: no maps in it")
+    for document in documents:
+        for number, entry in enumerate(document.maps, 1):
+            watch.found += 1
+            yield _hypothesis(f"{document.where}: map {number}", entry["at"], whole, experience)
+
+
+def _hypothesis(where: str, at: Any, whole: Experience, experience: Experience) -> At:
+    """The dstate after each step, if they make a hypothesis of the experience. Raises
+    InputError, one line, where they do not."""
+    steps = sorted((step, place, slot) for step, place, slot in at)
+    if len(steps) - 1 not in (whole.steps, experience.steps):
+        raise InputError(f"{where}: {len(steps) - 1} steps, the instance has {experience.steps}")
+    if wrong := check.by_definition(whole, steps):
+        rule, step = min(wrong, key=lambda violation: violation[::-1])
+        raise InputError(f"{where}: step {step}: it breaks the rule {rule} of check.lp")
+    return tuple((place, slot) for _, place, slot in steps[: experience.steps + 1])
+
+
+def _facts(experience: Experience, among: Sequence[Asked]) -> str:
+    """The maps as facts for ``encodings/explore.lp`` and its like."""
+    lines = [experience.facts().rstrip()]
+    for number, one in enumerate(among, 1):
+        lines.append(f"% map {number}: {printable(one.of)}")
+        dstates = enumerate(one.at)
+        lines.append(" ".join(f"map({number},{t},{place},{slot})." for t, (place, slot) in dstates))
+    return "\n".join(lines) + "\n"
+
+
+def _json(
+    args: argparse.Namespace,
+    experience: Experience,
+    among: Sequence[Asked],
+    made: Plan,
+    fault: str | None,
+) -> dict[str, Any]:
+    """The answer as JSON; maps are numbered from 1."""
+    return {
+        "instance": args.instance,
+        "slots": experience.slots,
+        "maps": [{"at": steps_json(one.at), "of": one.of} for one in among],
+        "marker": args.marker,
+        "kind": made.kind,
+        "turns": made.turns,
+        "drop": made.drop,
+        "left": made.left,
+        "proved": made.proved,
+        "predictions": [[_seen(one) for one in row] for row in made.predictions],
+        "classes": [[number + 1 for number in same] for same in made.classes],
+        "untold": [
+            {
+                "maps": [pair.one + 1, pair.other + 1],
+                "why": pair.why,
+                "open": pair.open,
+                "related": pair.related,
+            }
+            for pair in made.untold
+        ],
+        "complete": fault is None,
+        "fault": fault,
+    }
+
+
+def _seen(one: Prediction | None) -> dict[str, Any] | None:
+    if one is None:
+        return None
+    return {"view": sorted(one.view), "landmarks": sorted(one.landmarks), "marker": one.marker}
+
+
+def _write(
+    out: IO[str],
+    args: argparse.Namespace,
+    experience: Experience,
+    among: Sequence[Asked],
+    made: Plan,
+    fault: str | None,
+) -> None:
+    """The answer in words."""
+    kinds: dict[str, int] = {}
+    for one in among:
+        kinds[one.of] = kinds.get(one.of, 0) + 1
+    of = ", ".join(f"{number:,} {printable(kind)}" for kind, number in kinds.items())
+    out.write(f"{words.number(len(among), 'map')} ({of})\n")
+    if made.turns:
+        _write_walk(out, experience, made)
+    out.write(f"{_verdict(among, made)}\n")
+    for pair in made.untold[:MOST_PAIRS]:
+        out.write(f"maps {pair.one + 1} and {pair.other + 1}: {_why(pair)}\n")
+    if len(made.untold) > MOST_PAIRS:
+        out.write(f"and {words.number(len(made.untold) - MOST_PAIRS, 'more pair')}: see --json\n")
+    if fault:
+        why = FAULTS.get(fault, "").format(steps=args.steps)
+        out.write(f"partial: {fault}{f'; {why}' * bool(why)}\n")
+
+
+def _write_walk(out: IO[str], experience: Experience, made: Plan) -> None:
+    """The walk, and what the maps predict of it."""
+    groups: dict[tuple[Prediction | None, ...], list[int]] = {}
+    for number, row in enumerate(made.predictions, 1):
+        groups.setdefault(row, []).append(number)
+    shown = list(groups.items())[:MOST_GROUPS]
+    names = [f"map{'s' * (len(same) > 1)} {words.listed(same, 4)}" for _, same in shown]
+    table = [["step", "turn", *names]]
+    for step, turn in enumerate(made.turns):
+        if made.drop == step:
+            table.append(["", "put the marker down", *[""] * len(names)])
+        table.append(
+            [str(step + 1), _turn(experience, step, turn), *(_cell(r[step]) for r, _ in shown)]
+        )
+    widths = [max(map(len, column)) for column in zip(*table, strict=True)]
+    for line in table:
+        cells = (cell.ljust(width) for cell, width in zip(line, widths, strict=True))
+        out.write("  ".join(cells).rstrip() + "\n")
+    if len(groups) > MOST_GROUPS:
+        more = words.number(len(groups) - MOST_GROUPS, "more group")
+        out.write(f"and {more} of maps that predict something else: see --json\n")
+
+
+def _turn(experience: Experience, step: int, turn: int) -> str:
+    """A turn, by its number and in words."""
+    slots = experience.slots
+    if step == 0 and experience.steps == 0:
+        return f"{turn} leave{' by the gateway stood at' * (turn == 0)}"
+    return f"{turn} {words.direction(turn, slots).partition(' (')[0]}"
+
+
+def _cell(one: Prediction | None) -> str:
+    """What is seen: gateways clockwise of the one arrived at, landmarks, the marker."""
+    if one is None:
+        return "-"
+    seen = " ".join(map(str, sorted(one.view)))
+    signs = [words.signs(one.landmarks)] if one.landmarks else []
+    return ", ".join([words.short(seen, LONGEST), *signs, *["marker"] * one.marker])
+
+
+def _verdict(among: Sequence[Asked], made: Plan) -> str:
+    """What the walk is good for."""
+    many = len(among)
+    if made.kind == "settled":
+        return "settled: the map is closed, and the only one"
+    if made.kind == "bisimilar":
+        return "no walk tells the maps apart, for ever, and no gateway is pending"
+    if made.kind == "apart":
+        if not made.turns:
+            return "no walk was found that tells the maps apart"
+        best = "; no walk leaves fewer, none as few sooner" if made.proved else ""
+        return f"left in the worst case: {made.left:,} of {many:,} maps{best}"
+    if not made.turns:
+        return "no walk was found to a pending gateway"
+    off = sum(row[-1] is None for row in made.predictions)
+    why = f"in {off:,} of {many:,} maps" if many > 1 else "in the map"
+    told = many > 1 and made.proved
+    apart = "no walk leaves fewer maps in the worst case; " if told else ""
+    return f"{apart}it leads to what is not known: through a pending gateway {why}"
+
+
+def _why(pair: Untold) -> str:
+    """Why the walk does not tell two maps apart."""
+    if pair.why == "walk":
+        return "another walk tells them apart"
+    proof = f"{words.number(len(pair.related), 'pair')} of dstates, checked"
+    if pair.why == "bisimilar":
+        return f"no walk tells them apart, for ever: a bisimulation of {proof}"
+    of = []
+    for number, gateways in zip((pair.one, pair.other), pair.open, strict=True):
+        if gateways:
+            more = " and more" * (len(gateways) > 4)
+            of.append(f"{', '.join(map(gid, gateways[:4]))}{more} of map {number + 1}")
+    told = "no walk tells them apart by what both predict"
+    return f"{told} ({proof}); pending: {'; '.join(of)}"
+
+
+def _proof(
+    args: argparse.Namespace,
+    experience: Experience,
+    among: Sequence[Asked],
+    made: Plan,
+    fault: str | None,
+) -> dict[str, Any]:
+    """The proofs, to be checked by ``--check``."""
+    return {
+        "instance": args.instance,
+        "horizon": experience.steps,
+        "marker": args.marker,
+        "maps": [{"at": steps_json(one.at)} for one in among],
+        "proofs": [
+            {"maps": [pair.one + 1, pair.other + 1], "why": pair.why, "related": pair.related}
+            for pair in made.untold
+            if pair.related
+        ],
+        "complete": fault is None,
+    }
+
+
+def _check(args: argparse.Namespace, experience: Experience) -> int:
+    """Check what ``--proof`` wrote."""
+    path = args.check
+    try:
+        data = json.loads(files.text(path, maps.MOST_BYTES))
+        marker, proofs, steps = data["marker"], data["proofs"], data["horizon"]
+        kinds = isinstance(marker, bool), isinstance(proofs, list), type(steps) is int
+        if not all(kinds) or not 0 <= steps <= experience.steps:
+            raise ValueError
+    except (ValueError, LookupError, TypeError, RecursionError):
+        raise InputError(f"{path}: not what topomap explore --proof writes") from None
+    of = f", of the first {steps} of {experience.steps} steps" * (steps < experience.steps)
+    experience = experience.cut(steps)
+    document = maps.document(path, {"maps": data.get("maps")})
+    charts = []
+    put = max(experience.drops, default=-1)
+    lying = put >= max([0, *experience.picks])  # taking the marker up comes before putting it down
+    for number, entry in enumerate(document.maps, 1):
+        at = _hypothesis(f"{path}: map {number}", entry["at"], experience, experience)
+        grown = check.Grown(experience, dict(enumerate(at)), experience.steps)
+        landmarks = {place: experience.landmarks[place] for place in grown.stars}
+        rest = landmarks, at[put][0] if lying else None
+        charts.append(Chart(experience.slots, grown.stars, grown.links, at[-1], *rest))
+    wrong = []
+    for number, proof in enumerate(proofs, 1):
+        one, other, why, related = _read(f"{path}: proof {number}", proof, charts)
+        found = list(bisimulation.faults(one, other, related, marker))
+        if not found and why == "bisimilar" and any(bisimulation.pending(one, other, related)):
+            found.append("it comes to a pending gateway, so it is not for ever")
+        wrong += [f"{path}: proof {number}: {fault}" for fault in found[:1]]
+    with files.output(args.output) as out:
+        if args.json:
+            answer = {"instance": args.instance, "proofs": len(proofs), "wrong": wrong}
+            out.write(json.dumps(answer | {"complete": True, "fault": None}) + "\n")
+        else:
+            out.writelines(f"{line}\n" for line in wrong)
+            out.write(f"{words.number(len(proofs), 'proof')}, {len(wrong) or 'none'} wrong{of}\n")
+    return NO if wrong else 0
+
+
+def _read(where: str, proof: Any, charts: Sequence[Chart]) -> tuple[Chart, Chart, str, list[Pair]]:
+    """A proof of a file. Raises InputError where it is none."""
+
+    def number(value: Any) -> int:
+        if not isinstance(value, int) or isinstance(value, bool):
+            raise ValueError
+        return value
+
+    def dstate(value: Any) -> DState:
+        place, slot = value
+        return number(place), number(slot)
+
+    try:
+        first, second = (number(which) for which in proof["maps"])
+        if not 1 <= first < second <= len(charts):
+            raise ValueError
+        if proof["why"] not in ("bisimilar", "pending"):
+            raise ValueError
+        related: list[Pair] = []
+        for one, other, (a, b) in proof["related"]:
+            lies = None if a is None else number(a), None if b is None else number(b)
+            related.append((dstate(one), dstate(other), lies))
+    except (ValueError, LookupError, TypeError):
+        raise InputError(f"{where}: not what topomap explore --proof writes") from None
+    return charts[first - 1], charts[second - 1], proof["why"], related

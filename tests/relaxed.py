@@ -1,0 +1,155 @@
+"""Hypotheses that may break any rule: all dstates after the steps, and which rules they break,
+each written from its definition. Shares nothing with the encodings; for tiny experiences."""
+
+
+class Assignment:
+    """Any dstates after the steps: a place visited before, or a new one."""
+
+    def __init__(self, experience, at, bound=None):
+        self.experience, self.at, self.bound = experience, at, bound
+        self.slots, self.half = experience.slots, experience.slots // 2
+        self.ways = [
+            ((at[t][0], (at[t][1] + turn) % self.slots), at[t + 1])
+            for t, turn in enumerate(experience.turns)
+        ]
+        self.new = [step for step, (place, _) in enumerate(at) if place == step]
+        self.linked = {end for way in self.ways for end in way}
+
+    def broken(self, reason):
+        kind, _, rest = reason.partition("(")
+        numbers = [int(n) for n in rest.rstrip(")").split(",")] if rest else []
+        return getattr(self, kind)(*numbers)
+
+    def view(self, t, p):
+        turn, views, signs = self.at[t][1] - self.at[p][1], self.experience.views, self.experience
+        turned = {(s + turn) % self.slots for s in views[t]}
+        same = turned == set(views[p]) and signs.landmarks[t] == signs.landmarks[p]
+        return self.at[t][0] == self.at[p][0] and not same
+
+    def marker(self, t):
+        e, down = self.experience, None
+        for step in range(t):
+            down = None if step in e.picks else down
+            down = step if step in e.drops else down
+        seen = t in e.markers or t in e.picks
+        return down is not None and seen != (self.at[t][0] == self.at[down][0])
+
+    def schema(self, t, u):
+        (out, end), (other, arrival) = self.ways[t - 1], self.ways[u - 1]
+        return (out == other) != (end == arrival)
+
+    def unification(self, t, u):
+        (out, end), (other, arrival) = self.ways[t - 1], self.ways[u - 1]
+        return (end == other) != (out == arrival)
+
+    def runs(self):
+        """Of each run the slots for which it heads at its visits."""
+        runs = {}
+        for t, ((_, out), (_, slot)) in enumerate(self.ways, 1):
+            if t == 1 or self.experience.turns[t - 1] != self.half:
+                runs[t] = {t - 1: out}
+                last = t
+            runs[last][t] = (slot + self.half) % self.slots
+        return runs
+
+    def axes(self, run):
+        return {(self.at[t][0], slot % self.half) for t, slot in self.runs()[run].items()}
+
+    def path(self, run):
+        """The runs on one path with it."""
+        runs, met = self.runs(), {run}
+        while more := {b for b in runs if b not in met and
+                       any(self.axes(a) & self.axes(b) for a in met)}:  # fmt: skip
+            met |= more
+        return met
+
+    def twice(self, t, u):
+        on = any({t, u} <= set(run) for run in self.runs().values())
+        return on and self.at[t][0] == self.at[u][0]
+
+    def crossed(self, a, b):
+        return b in self.path(a) and any(
+            p == q and x != y for p, x in self.axes(a) for q, y in self.axes(b)
+        )
+
+    def circular(self, a):
+        runs = self.runs()
+        ends = {(self.at[t][0], slot) for run in self.path(a) for t, slot in runs[run].items()} | {
+            (self.at[run - 1][0], (runs[run][run - 1] + self.half) % self.slots)
+            for run in self.path(a)
+        }
+        return a in runs and ends <= self.linked
+
+    def fresh(self, t):
+        return not any(self.ways[t - 1][0] in way for way in self.ways[: t - 1])
+
+    def planar(self, t, u):
+        """Where a gateway comes on the walk round the tree: after all that is beyond it."""
+
+        def key(gateway):
+            place, slot = gateway
+            return (*(key(self.ways[place - 1][0])[:-1] if place else ()), slot, self.slots)
+
+        def chord(t):
+            return self.fresh(t) and t not in self.new
+
+        def between(end):
+            place, slot = end
+            seen = slot in self.experience.views[place]
+            return seen and sum(key(end) < key(other) for other in self.ways[u - 1]) == 1
+
+        out, end = self.ways[t - 1]
+        return chord(t) and chord(u) and between(out) != between(end)
+
+    def closed(self, p, s):
+        return p in self.new and s in self.experience.views[p] and (p, s) not in self.linked
+
+    def travelled(self, p, s):
+        ends = {(p, s), (p, (s + self.half) % self.slots)}
+        there = any(end[1] in self.experience.views[p] for end in ends)
+        return p in self.new and there and not ends & self.linked
+
+    def places_on(self, a):
+        return {place for run in self.path(a) for place, _ in self.axes(run)}
+
+    def perpendicular(self, a, b):
+        first = {min(self.path(run)) for run in self.runs()}
+        both = {a, b} <= first
+        return both and len(self.places_on(a) & self.places_on(b)) > 1
+
+    def triangle(self, a, b, c):
+        first = {min(self.path(run)) for run in self.runs()}
+        if not {a, b, c} <= first:
+            return False
+        on = [self.places_on(run) for run in (a, b, c)]
+        meet = on[0] & on[1] and on[1] & on[2] and on[0] & on[2]
+        return bool(meet) and not (self.slots >= 6 and on[0] & on[1] & on[2])
+
+
+def assignments(experience):
+    """All dstates by step that are named by first visits."""
+    ats = [((0, 0),)]
+    for step in range(1, experience.steps + 1):
+        ats = [
+            (*at, dstate)
+            for at in ats
+            for dstate in [
+                (step, 0),
+                *((p, s) for p, q in enumerate(at) if p == q[0] for s in range(experience.slots)),
+            ]
+        ]
+    return ats
+
+
+def reasons(experience):
+    """All that the rules of every map can name."""
+    steps = range(experience.steps + 1)
+    for t in steps:
+        yield f"marker({t})"
+        for u in steps[t + 1 :]:
+            yield from (f"view({u},{t})", f"twice({t},{u})")
+            if t:
+                yield from (f"schema({t},{u})", f"unification({t},{u})")
+    runs = Assignment(experience, tuple((t, 0) for t in steps)).runs()
+    yield from (f"circular({a})" for a in runs)
+    yield from (f"crossed({a},{b})" for a in runs for b in runs)
