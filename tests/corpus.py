@@ -808,8 +808,12 @@ def following() -> Iterator[Query]:
             ends = (*steps, f":- not closed({names[-1]}).")
             yield asked(found, arguments=("--opt-mode=optN",), steps=ends)
         else:
-            told = [((), atoms(at) | together(experience.slots, at, names)) for at in every]
-            yield asked(told, "online/certain", arguments=ignore)
+            told = [atoms(at) | together(experience.slots, at, names) for at in every]
+            yield asked([((), one) for one in told], "online/certain", arguments=ignore)
+            for mode, join in ("cautious", frozenset.intersection), ("brave", frozenset.union):
+                found = [((), join(*told))] if told else []
+                how = (*ignore, f"--enum-mode={mode}")
+                yield asked(found, "online/certain", arguments=how)
 
 
 def astray(draw, experience):

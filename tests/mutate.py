@@ -127,7 +127,7 @@ def closure(folder: Path, files: tuple[str, ...]) -> tuple[str, ...]:
 
 def sets(folder: Path, asked: list[Query]) -> dict[tuple[str, ...], tuple[str, ...]]:
     """What is loaded by each set of files that a query names."""
-    return {files: closure(folder, files) for files in {query.files for query in asked}}
+    return {files: closure(folder, files) for files in dict.fromkeys(q.files for q in asked)}
 
 
 def tries(files: tuple[str, ...], loaded: tuple[str, ...], file: str) -> bool:
@@ -215,12 +215,17 @@ def tried(program: str, query: Query) -> str:
     if messages:
         return "refused"
     optimal = "--opt-mode=optN" in query.arguments
+    together = any(argument.startswith("--enum-mode=") for argument in query.arguments)
     found = []
 
     def read(model: clingo.Model) -> bool:
         if optimal and not model.optimality_proven:
             return True
+        if together:  # each model comes nearer to what holds in all, or in some; the last is it
+            found.clear()
         found.append((tuple(model.cost), frozenset(map(str, model.symbols(shown=True)))))
+        if together:
+            return True
         return found[-1] in query.answers and len(found) <= len(query.answers)
 
     control.solve(on_model=read)
