@@ -364,13 +364,13 @@ def misread() -> Iterator[Query]:
 
 
 def figures(seen: Experience, ways) -> Query:
-    """How many paths and pending gateways there are where views are wrong."""
-    facts = seen.facts() + "ask(number(path,0..20)). ask(number(pending,0..20))."
+    """How many places, links, paths and pending gateways there are where views are wrong."""
+    terms = {figure: NAMED.get(figure, figure) for figure in FIGURES if figure != "genus"}
+    facts = seen.facts() + " ".join(f"ask(number({term},0..20))." for term in terms.values())
     answers = set()
     for (at, wrong), cost in expected(ways, ()).items():
         map_ = dict(ways)[wrong].final[at]
-        told = {f"holds(number(path,{FIGURES['paths'](map_)}))"}
-        told.add(f"holds(number(pending,{FIGURES['pending'](map_)}))")
+        told = {f"holds(number({terms[one]},{FIGURES[one](map_)}))" for one in terms}
         answers.add((cost, wrong_atoms(at, wrong) | told))
     arguments = ("--opt-mode=enum,999",)
     return Query(("topomap", "noise", "query"), facts, frozenset(answers), arguments)
@@ -824,7 +824,8 @@ def astray(draw, experience):
         if step and draw.random() < 0.4:
             turn = draw.choice(sorted(experience.views[step - 1]))
             last += 1
-            steps.append(f"turn({last},{turn}). after({last},{names[-1]}). view({last},0).")
+            told = "".join(f" {name}({last})." for name in MARKER if draw.random() < 0.3)
+            steps.append(f"turn({last},{turn}). after({last},{names[-1]}). view({last},0).{told}")
             steps.append(str(last))
         last += 1
         facts = [f"view({last},{slot})." for slot in sorted(experience.views[step])]
