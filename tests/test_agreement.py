@@ -21,7 +21,7 @@ from topomap.statistics import Tally
 from worlds import WORLDS, random_experience
 
 QUICK = settings(
-    max_examples=20,
+    max_examples=12,
     derandomize=True,
     deadline=None,
     suppress_health_check=list(HealthCheck),

@@ -93,7 +93,7 @@ def drawn(draw, number):
             return experience, truth
 
 
-@pytest.mark.parametrize("cases", [60, pytest.param(1000, marks=pytest.mark.long)])
+@pytest.mark.parametrize("cases", [30, pytest.param(1000, marks=pytest.mark.long)])
 def test_answers_are_those_of_all_maps(cases):
     for number in range(cases):
         draw = random.Random(f"ask {cases} {number}")

@@ -377,7 +377,7 @@ def test_the_same_bytes_for_the_same_map(tmp_path):
     program = "from topomap.cli import main; assert not any(main(call) for call in {})"
     for seed in "12":
         names = [f"{tmp_path}/{seed}.{form}" for form in FORMATS]
-        calls = [["draw", GRID, "-o", name] for name in names]
+        calls = [["draw", GRID, "--map", "1", "-o", name] for name in names]
         environment = {**os.environ, "PYTHONHASHSEED": seed}
         call = [sys.executable, "-c", program.format(calls)]
         subprocess.run(call, cwd=ROOT, check=True, env=environment)
@@ -386,7 +386,7 @@ def test_the_same_bytes_for_the_same_map(tmp_path):
         assert one.read_bytes() == other.read_bytes()
 
 
-def test_maps_from_a_file(tmp_path, topomap):
+def test_maps_from_a_file_or_a_pipe(tmp_path, topomap):
     maps = tmp_path / "maps.json"
     assert not topomap("solve", GRID, "--optimal", "--json", "-o", maps).returncode
     pictures = [tmp_path / name for name in ("a.svg", "b.svg")]
@@ -395,6 +395,10 @@ def test_maps_from_a_file(tmp_path, topomap):
     at = [json.loads(maps.read_text())["maps"][n]["at"] for n in (0, 1)]
     same = pictures[0].read_bytes() == pictures[1].read_bytes()
     assert same == (at[0] < at[1])
+    piped = tmp_path / "piped.svg"
+    call = "draw", "-", "--map", "1", "-o", piped
+    assert not topomap(*call, input=maps.read_text()).returncode
+    assert pictures[0].read_bytes() == piped.read_bytes()
 
 
 def odd(name):
@@ -571,12 +575,3 @@ def test_interrupted_figures_say_so(tmp_path):
         _, told = process.communicate(timeout=60)
     assert (process.returncode, told.splitlines()[-1]) == (130, f"{tmp_path}: partial: interrupted")
     assert {path.suffix for path in tmp_path.iterdir()} == {".svg"}
-
-
-def test_maps_by_a_pipe(topomap, tmp_path):
-    maps = tmp_path / "maps.json"
-    assert not topomap("solve", GRID, "--optimal", "--json", "-o", maps).returncode
-    pictures = [tmp_path / name for name in ("a.svg", "b.svg")]
-    for source, text, picture in zip((maps, "-"), (None, maps.read_text()), pictures, strict=True):
-        assert not topomap("draw", source, "-o", picture, input=text).returncode
-    assert pictures[0].read_bytes() == pictures[1].read_bytes()

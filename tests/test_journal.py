@@ -32,7 +32,7 @@ LONG_RUNS = {
 
 def slow(name):
     """Those runs that the default tests can do without are long."""
-    others = ("count", "solve", "solve, JSON", "solve by search", "solve by two")
+    others = ("count", "solve, JSON", "solve by search")
     return pytest.param(name, marks=[] if name in others else pytest.mark.long)
 
 

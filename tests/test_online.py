@@ -90,7 +90,7 @@ def test_each_step_of_the_worlds(name, planar):
     assert list(follow_all(WORLDS[name], planar))
 
 
-@pytest.mark.parametrize("cases", [60, pytest.param(800, marks=pytest.mark.long)])
+@pytest.mark.parametrize("cases", [30, pytest.param(800, marks=pytest.mark.long)])
 def test_each_step_of_random_experiences(cases):
     for number in range(cases):
         draw = random.Random(f"online {number}")
@@ -99,7 +99,7 @@ def test_each_step_of_random_experiences(cases):
         assert list(follow_all(experience, draw.random() < 0.5, bound))
 
 
-@pytest.mark.parametrize("cases", [60, pytest.param(1500, marks=pytest.mark.long)])
+@pytest.mark.parametrize("cases", [30, pytest.param(1500, marks=pytest.mark.long)])
 def test_each_step_of_walks_with_a_marker(cases):
     told = 0
     for number in range(cases):

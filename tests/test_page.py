@@ -332,7 +332,9 @@ def clockwise(drawn, world, place):
     return sorted(angle, key=angle.get)
 
 
-@pytest.mark.parametrize("name", [GRID, "instances/manhattan-tour20.lp"])
+@pytest.mark.parametrize(
+    "name", [GRID, pytest.param("instances/manhattan-tour20.lp", marks=pytest.mark.long)]
+)
 def test_drawings_are_of_the_maps(name):
     seen = read(ROOT / name).cut(12)
     about = Exploration(name, seen, Query(), 2, Watch(quiet=True))

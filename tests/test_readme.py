@@ -21,8 +21,9 @@ CALLS = [
 
 
 def case(command, expected):
-    """A command as a test; those on the real map that search for long are long."""
-    slow = "manhattan-tour88" in command or ("tour40" in command and "--planar" in command)
+    """A command as a test; those that take seconds, and are tried elsewhere too, are long."""
+    names = "tour88", "tour40", "topomap report", "topomap table"
+    slow = any(name in command for name in names)
     return pytest.param(command, expected, id=command, marks=[pytest.mark.long] if slow else [])
 
 

@@ -73,7 +73,7 @@ def routed(made, start, experience):
 
 
 @pytest.mark.parametrize(
-    ("number", "seed"), [(20, 1), pytest.param(300, 2, marks=pytest.mark.long)]
+    ("number", "seed"), [(10, 1), pytest.param(300, 2, marks=pytest.mark.long)]
 )
 def test_robots_in_random_worlds_end_as_they_say(number, seed):
     for made, start in worlds(number, seed):
