@@ -9,7 +9,7 @@ import random
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from functools import cache, partial
-from itertools import combinations
+from itertools import combinations, product
 
 import phased
 import walks
@@ -386,19 +386,22 @@ def wrong_atoms(at, misread) -> frozenset[str]:
 
 def given_up() -> Iterator[Query]:
     """All dstates by step, with what they break; and those that break least."""
-    for name in ("corners", "mirrored", "ahead", "branch", "loop", "lost", "added"):
+    names = "corners", "mirrored", "ahead", "branch", "loop", "lost", "added"
+    for name, parts in [*((name, ()) for name in names), ("corners", ("closed",))]:
         experience = EXPERIENCES[name].cut(3)
+        pending = product(range(experience.steps + 1), range(experience.slots))
+        every = [*reasons(experience), *(f"closed({p},{s})" for p, s in pending if parts)]
         found = []
         for at in assignments(experience):
             one = Assignment(experience, at)
-            broken = [f"waived({reason})" for reason in reasons(experience) if one.broken(reason)]
+            broken = [f"waived({reason})" for reason in every if one.broken(reason)]
             atoms = frozenset([*broken, *(f"at({t},{p},{s})" for t, (p, s) in enumerate(at))])
             found.append((len(broken), atoms))
-        every = frozenset(((), atoms) for _, atoms in found)
+        whatever = frozenset(((), atoms) for _, atoms in found)
         least = min(number for number, _ in found)
         best = frozenset(((number,), atoms) for number, atoms in found if number == least)
-        files = ("topomap", "explain")
-        yield Query(files, experience.facts(), every, ("--opt-mode=ignore",))
+        files = ("topomap", "explain", *parts)
+        yield Query(files, experience.facts(), whatever, ("--opt-mode=ignore",))
         yield Query(files, experience.facts(), best, ("--opt-mode=optN",))
 
 
@@ -764,12 +767,17 @@ def proved(facts: str, among: list[Standing], carried: bool, pairs: list | None)
     return Query(("bisimilar",), facts, shown(*atoms))
 
 
+# The marker is put down, taken up at the same place, and not seen there any more.
+TAKEN_BACK = replace(seen("0", "0: 0", "0: 0", "0: 0", "0: 0"), drops=FIRST, picks=LAST)
+
+
 def following() -> Iterator[Query]:
     """Experiences step by step: all hypotheses, the planar ones, those of few places, what
     they cost, the best closed ones, and which visits are of one place. Steps that lead
     elsewhere are taken back."""
     draws = [random_experience(random.Random(f"following {seed}"), 9) for seed in range(40)]
     draws += [random_experience(random.Random(f"marked {seed}"), 9, True) for seed in range(24)]
+    draws += [TAKEN_BACK, TAKEN_BACK]
     for number, experience in enumerate([*(EXPERIENCES | WORLDS).values(), *draws]):
         truth = Truth(experience)
         head, *lines = experience.facts().splitlines()
