@@ -342,9 +342,10 @@ def misread() -> Iterator[Query]:
     drawn = [(corrupted(random.Random(f"misread {seed}"), 3), 1) for seed in range(16)]
     drawn += [(corrupted(random.Random(f"misread {seed}"), 2), 2) for seed in range(2)]
     named = [(EXPERIENCES[name], 1) for name in ("same", "lost", "added")]
+    named.append((seen("1", "0: 0", "0: 0"), 1))  # and where it stood at first
     nothing = Experience(4, (frozenset(),), (), (frozenset(),))
-    for seen, most in [*drawn, *named, (CORNERS, 0), (nothing, 1)]:
-        ways = list(brute(seen, most))
+    for experience, most in [*drawn, *named, (CORNERS, 0), (nothing, 1)]:
+        ways = list(brute(experience, most))
         for parts in ((), ("closed",), ("minimal",), ("genus", "minimal")):
             every = {
                 cost: [key for key, other in found.items() if other == cost]
@@ -355,12 +356,12 @@ def misread() -> Iterator[Query]:
             files = ("topomap", "noise", *parts)
             answers = frozenset((cost, atoms) for cost in said for atoms in said[cost])
             how = () if most == 1 else ("-c", f"noise={most}")
-            yield Query(files, seen.facts(), answers, (*how, "--opt-mode=enum,999"))
+            yield Query(files, experience.facts(), answers, (*how, "--opt-mode=enum,999"))
             best = min(said, default=())
             answers = frozenset((best, atoms) for atoms in said.get(best, ()))
-            yield Query(files, seen.facts(), answers, (*how, "--opt-mode=optN"))
+            yield Query(files, experience.facts(), answers, (*how, "--opt-mode=optN"))
         if ways and len(ways[0][1].final) < 20 and most == 1:
-            yield figures(seen, ways)
+            yield figures(experience, ways)
 
 
 def figures(seen: Experience, ways) -> Query:

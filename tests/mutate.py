@@ -336,17 +336,18 @@ def marks(
     loaded = sets(folder, asked + measured)
     of_file: dict[str, Any] = {}
     for file in {mutant.file for mutant in chosen}:
-        digest = hashlib.sha256(repr((clingo.__version__, SECONDS, BYTES)).encode())
+        told = []  # in any order, as queries of other files are mixed with these
         for files, every in loaded.items():
             if tries(files, every, file):
                 texts = [list(map(str, statements(folder, name))) for name in every]
-                digest.update(repr((files, texts)).encode())
+                told.append(repr((files, texts)))
         for query in asked + measured * file.startswith(LEAN):
             if tries(query.files, loaded[query.files], file):
                 answers = sorted((cost, sorted(atoms)) for cost, atoms in query.answers)
                 asked_for = query.files, query.facts, query.arguments, query.steps, query.parts
-                digest.update(repr((*asked_for, answers)).encode())
-        of_file[file] = digest
+                told.append(repr((*asked_for, answers)))
+        settled = clingo.__version__, SECONDS, BYTES
+        of_file[file] = hashlib.sha256(repr((settled, sorted(told))).encode())
     found = {}
     for mutant in chosen:
         digest = of_file[mutant.file].copy()
