@@ -52,7 +52,7 @@ def test_the_readme_shows_the_committed_reports():
     figures = [int(number) for number in re.findall(r"\d+", total)]
     mutants, survived, *_, larger, equivalent = figures[4:]
     assert f"| {mutants:,} mutants | {survived} survive; {equivalent} equivalent" in text
-    assert f"; {larger} of `fast/` only" in text
+    assert f"; {larger} of `fast/` and `online/` only" in text
 
 
 def test_the_readme_says_how_often_what_was_tried():
