@@ -221,6 +221,7 @@ def test_the_picture_has_the_same_bytes_each_time(tmp_path):
     assert "exponent 3.0" in (tmp_path / "a.svg").read_text()
 
 
+@pytest.mark.long
 def test_rows_are_measured_again_into_what_there_is(bench):
     tasks = row(name="one", expected=6) + row(name="two")
     done, _, _ = bench("--again", "one", tasks=tasks)

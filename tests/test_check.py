@@ -251,6 +251,7 @@ def test_a_file_of_several_instances(topomap, tmp_path):
     assert topomap("check", "instances/grid-4x4-snake.lp", maps).returncode == 2
 
 
+@pytest.mark.long
 def test_a_circular_path_may_begin_anywhere(topomap, tmp_path):
     """Either way round; but its order counts."""
     made = instance(grid(1, 5, "cylinder"), "walk", steps=12)

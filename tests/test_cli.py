@@ -151,6 +151,7 @@ def test_a_time_limit_ends_the_table(topomap, tmp_path, beyond):
     assert file.read_text() == "old"
 
 
+@pytest.mark.long
 def test_a_timeout_and_an_interrupt_end_the_phases(topomap, tmp_path):
     """They take long."""
     topomap("generate", "grid", "20", "20", "--route", "snake", "-o", tmp_path)

@@ -329,6 +329,7 @@ def test_the_agents_right_is_the_pictures_right():
     assert y < 0
 
 
+@pytest.mark.long
 def test_faces_are_round_their_numbers():
     for number in range(6):
         scene = some_map(number, "planar")

@@ -174,6 +174,7 @@ def test_a_killed_writer_leaves_a_file_that_the_next_one_removes(tmp_path):
     assert partial((tmp_path / "out").read_text())
 
 
+@pytest.mark.long
 def test_several_writers_of_one_file(tmp_path):
     call = [BIN / "topomap", "generate", "grid", "3", "3", "--route", "snake", "-o", "out"]
     writers = [subprocess.Popen(call, cwd=tmp_path) for _ in range(8)]

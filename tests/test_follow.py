@@ -145,6 +145,7 @@ def settled_by_a_marker():
     return explore(made.map, ((0, 0), EAST), route, drops=[16])[0]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("form", ["facts", "json", "amended"])
 def test_a_marker_settles_what_else_nothing_does(topomap, tmp_path, form):
     experience = settled_by_a_marker()

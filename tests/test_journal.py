@@ -111,6 +111,7 @@ def test_what_is_done_is_not_done_again(tmp_path, monkeypatch, way):
     assert len(left) == len(search.cubes(read(PAPER), Query())[0]) - 40
 
 
+@pytest.mark.long
 def test_whoever_resumes_comes_to_the_same(tmp_path, monkeypatch):
     """The units do not depend on how many do them."""
     whole, file = tmp_path / "whole", tmp_path / "file"
@@ -281,6 +282,7 @@ def test_a_partial_answer_is_kept_and_gone_on_with(tmp_path):
     assert [path.name for path in tmp_path.iterdir()] == ["maps.json"]
 
 
+@pytest.mark.long
 def test_of_several_instances_the_first_is_gone_on_with(tmp_path):
     """A limit cuts each of them; the journal is of the first, then."""
     file, whole = tmp_path / "maps.json", tmp_path / "whole.json"

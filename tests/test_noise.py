@@ -266,6 +266,7 @@ def test_the_command_says_what_it_disbelieves(topomap):
     assert last == "1 optimal map, cost 1 1 6 9"
 
 
+@pytest.mark.long
 def test_maps_with_misreadings_are_checked_and_drawn(topomap, tmp_path, capsys):
     file = tmp_path / "maps.json"
     done = topomap("solve", MISREAD, "--optimal", "--noise", "2", "--json", "-o", file)

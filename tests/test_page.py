@@ -449,6 +449,7 @@ def test_agreement_of_maps():
                 assert (place in agreed.strange(number)) == any(s != steps for s in sames)
 
 
+@pytest.mark.long
 def test_the_same_input_gives_the_same_bytes(tmp_path):
     for seed in "12":
         run(

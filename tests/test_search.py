@@ -163,6 +163,7 @@ def test_best_first_goes_by_the_policy():
     assert len(taken) == len(set(taken)) == COLUMNS[0]["expected"]["nodes"]
 
 
+@pytest.mark.long
 def test_partial_figures_say_so(topomap):
     done = topomap("search", SNAKE, "--order", "depth", "--timeout", "1", "--json")
     answer = json.loads(done.stdout)

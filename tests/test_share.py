@@ -46,6 +46,7 @@ def local_cluster():
     )
 
 
+@pytest.mark.long
 def test_nothing_is_said_of_the_processes():
     for command in (["count"], ["solve"], ["solve", "--by", "search"]):
         call = [BIN / "topomap", *command, GRID, "--jobs", "2"]
@@ -222,6 +223,7 @@ def test_a_lost_worker_costs_its_unit_only(tmp_path, kind):
             assert done == list(range(20))
 
 
+@pytest.mark.long
 def test_what_kills_each_worker_is_given_up():
     with share.Processes(1) as crew, pytest.raises(Stopped, match=share.LOST):
         list(crew.each(die, range(3), QUIET))
@@ -338,6 +340,7 @@ def test_workers_that_have_another_topomap(cluster, capsys, monkeypatch):
     assert "has another topomap" in err
 
 
+@pytest.mark.long
 def test_a_lost_cluster(capsys):
     """The scheduler goes while the work is done."""
     with local_cluster() as made:

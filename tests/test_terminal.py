@@ -432,6 +432,7 @@ SHOWN = "show", "instances/grid-3x3-snake.lp", "--planar"
 ESCAPE = re.compile(r"\x1b\[[\d;]*m")
 
 
+@pytest.mark.long
 def test_colour_is_for_terminals(topomap):
     plain = topomap(*SHOWN)
     assert plain.returncode == 0
