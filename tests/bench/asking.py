@@ -34,7 +34,7 @@ HEAD = """# What it takes to ask
 
 Written by `make bench` (`python -m bench.asking` in `tests/`). Seconds are of whole commands, the
 start of Python included: the median of {times} runs on one core. Each answer is compared with one
-that was found in another way.
+that was found in another way; that reasons are minimal is the word of `explain` itself.
 
 | command | answer | s |
 | --- | --- | --: |
