@@ -116,7 +116,7 @@ def strikes(name, command, folder, seeds, again):
 
 
 @pytest.mark.parametrize("name", COMMANDS)
-@pytest.mark.parametrize("seeds", [range(1), pytest.param(range(40), marks=pytest.mark.long)])
+@pytest.mark.parametrize("seeds", [range(1), pytest.param(range(20), marks=pytest.mark.long)])
 def test_strikes(tmp_path, name, seeds, record_property):
     hits = strikes(name, COMMANDS[name], tmp_path, seeds, again=1 if len(seeds) == 1 else 0.3)
     assert hits >= len(seeds) // 4
@@ -200,7 +200,7 @@ def copy(tmp_path):
     ("batch", "kills"),
     [
         ("grid 3 {3..5} --route snake\n", 1),
-        pytest.param((ROOT / "instances/batch.txt").read_text(), 15, marks=pytest.mark.long),
+        pytest.param((ROOT / "instances/batch.txt").read_text(), 8, marks=pytest.mark.long),
     ],
 )
 def test_killed_batches(copy, batch, kills, record_property):
@@ -306,7 +306,7 @@ def least_memory():
 
 
 @pytest.mark.parametrize(
-    "extra", [[60], pytest.param(range(0, 300, 20), marks=pytest.mark.long)], ids=len
+    "extra", [[60], pytest.param(range(0, 300, 40), marks=pytest.mark.long)], ids=len
 )
 def test_want_of_memory(tmp_path, extra, record_property):
     """What was found is kept, in a partial answer. Grounding a snake of 14 x 14 asks for more

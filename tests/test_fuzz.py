@@ -278,7 +278,7 @@ def feed(tmp_path, monkeypatch):
     return run
 
 
-CASES = [240, pytest.param(16000, marks=pytest.mark.long)]
+CASES = [240, pytest.param(8000, marks=pytest.mark.long)]
 
 
 @pytest.mark.parametrize("cases", CASES)

@@ -288,5 +288,5 @@ def test_no_statement_can_be_removed(fast):
 
 @pytest.mark.long
 def test_a_sample_is_killed(capsys):
-    status = mutate.main(["--sample", "200", "--seed", "sample"])
+    status = mutate.main(["--sample", "100", "--seed", "sample"])
     assert status == 0, capsys.readouterr().out

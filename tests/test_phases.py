@@ -219,7 +219,7 @@ def test_bounds(block):
 
 @pytest.mark.long
 def test_many_bounds():
-    for number in range(300):
+    for number in range(150):
         agree_on_bounds(f"long {number}", 20)
 
 

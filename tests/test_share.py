@@ -82,6 +82,21 @@ def exhaust(number, watch):
     raise MemoryError
 
 
+class Heavy:
+    """What takes longer to send than the wait between two looks at the time limit."""
+
+    def __reduce__(self):
+        time.sleep(0.3)
+        return Heavy, ()
+
+    def __eq__(self, other):
+        return isinstance(other, Heavy)
+
+
+def lift(number, watch):
+    return Heavy()
+
+
 def linger(folder, number, watch):
     """Note this process, and stay while the work is wanted."""
     (Path(folder) / str(os.getpid())).touch()
@@ -223,6 +238,12 @@ def test_a_lost_worker_costs_its_unit_only(tmp_path, kind):
             assert done == list(range(20))
 
 
+def test_what_takes_long_to_send_arrives(crew):
+    with crew:
+        done = list(crew.each(lift, range(3), Watch(timeout=30, quiet=True)))
+    assert done == [Heavy()] * 3
+
+
 @pytest.mark.long
 def test_what_kills_each_worker_is_given_up():
     with share.Processes(1) as crew, pytest.raises(Stopped, match=share.LOST):
@@ -352,13 +373,19 @@ def test_a_lost_cluster(capsys):
     assert (answer["complete"], answer["fault"]) == (False, share.LOST)
 
 
-def kill_a_worker(address, when):
+def kill_a_worker(made):
     """Kill a worker of the cluster, in mid-run."""
-    with Client(address, set_as_default=False) as client:
-        eventually(lambda: any(client.processing().values()))
-        time.sleep(when)
-        pids = client.run(os.getpid)
-        os.kill(next(iter(pids.values())), signal.SIGKILL)
+    found = []
+
+    def busy():
+        states = list(made.scheduler.workers.values())
+        at_work = {state.address for state in states if state.processing}
+        found[:] = [one.pid for one in made.workers.values() if one.worker_address in at_work]
+        return any(found)
+
+    time.sleep(0.3)
+    eventually(busy)
+    os.kill(next(filter(None, found)), signal.SIGKILL)
 
 
 @pytest.mark.parametrize(
@@ -374,17 +401,16 @@ def test_the_same_numbers_though_workers_are_killed(monkeypatch, capsys, instanc
     assert main(["count", instance, "--json", *more]) == 0
     whole = capsys.readouterr().out
     with local_cluster() as made:
-        address = made.scheduler_address
         done = []
 
         def strike():
             for _ in range(kills):
-                kill_a_worker(address, 0.3)
-                done.append(address)
+                kill_a_worker(made)
+                done.append(made)
 
         striker = threading.Thread(target=strike)
         striker.start()
-        assert main(["count", instance, "--json", *more, "--dask", address]) == 0
+        assert main(["count", instance, "--json", *more, "--dask", made.scheduler_address]) == 0
         struck = len(done)
         striker.join()
     assert capsys.readouterr().out == whole

@@ -221,7 +221,7 @@ def straight_scenes(number):
         )
 
 
-@pytest.mark.parametrize("cases", [60, pytest.param(3000, marks=pytest.mark.long)])
+@pytest.mark.parametrize("cases", [60, pytest.param(1500, marks=pytest.mark.long)])
 def test_random_straight_maps_are_read_back(cases):
     kinds = Counter()
     for scene in straight_scenes(cases):

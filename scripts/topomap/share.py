@@ -1,6 +1,7 @@
 """Work in units, shared out among processes or the workers of a Dask cluster: results come in
 the order of the units, whoever has done them."""
 
+import asyncio
 import contextlib
 import logging
 import os
@@ -8,6 +9,7 @@ import signal
 import socket
 from collections import Counter, deque
 from collections.abc import Callable, Iterator, Sequence
+from concurrent import futures
 from multiprocessing import get_context
 from multiprocessing.connection import Connection, wait
 from multiprocessing.process import BaseProcess
@@ -176,33 +178,37 @@ class Cluster:
     def each(
         self, work: Work[Unit, Result], units: Sequence[Unit], watch: Watch
     ) -> Iterator[Result]:
-        futures: deque[Any] = deque()
+        given: deque[Any] = deque()
         try:
             for number in range(len(units)):
                 ahead = AHEAD * max(1, sum(self._client.nthreads().values()))
-                for unit in units[number + len(futures) : number + ahead]:
+                for unit in units[number + len(given) : number + ahead]:
                     call = _at_worker, solver.digest(), work, unit
-                    futures.append(self._client.submit(*call, pure=False))
-                result = self._result(futures[0], watch)
-                futures.popleft()
+                    given.append(self._client.submit(*call, pure=False))
+                result = self._result(given[0], watch)
+                given.popleft()
                 yield result
         except self._dask.comm.core.CommClosedError:
             raise Stopped(LOST) from None
         finally:
             with contextlib.suppress(Exception):  # there may be no cluster any more
-                self._client.cancel(futures)
+                self._client.cancel(given)
 
     def _result(self, future: Any, watch: Watch) -> Any:
-        while True:
+        # Asked for once: where Dask's own timeout ends, so does what is on its way.
+        asked = self._client.gather(future, asynchronous=True)
+        coming = asyncio.run_coroutine_threadsafe(asked, self._client.loop.asyncio_loop)
+        try:
             watch.tick()
-            try:
-                return future.result(timeout=0.1)
-            except (TimeoutError, UnboundLocalError):  # the latter: a result lost on its way
-                continue
-            except (self._dask.KilledWorker, self._dask.CancelledError):
-                raise Stopped(LOST) from None
-            except ImportError as error:
-                raise InputError(f"--dask {self._address}: a worker: {error}") from None
+            while not futures.wait([coming], timeout=0.1).done:
+                watch.tick()
+            return coming.result()
+        except (self._dask.KilledWorker, self._dask.CancelledError):
+            raise Stopped(LOST) from None
+        except ImportError as error:
+            raise InputError(f"--dask {self._address}: a worker: {error}") from None
+        finally:
+            coming.cancel()
 
     def __enter__(self) -> "Cluster":
         return self
