@@ -10,12 +10,12 @@ from collections.abc import Sequence
 from itertools import combinations, pairwise
 from typing import Any
 
-import networkx as nx
 import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
 from scipy.sparse import linalg
 
+from topomap import nx
 from topomap.topology import Gateway, Place, TopologicalMap
 
 Points = NDArray[np.float64]

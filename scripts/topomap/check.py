@@ -7,8 +7,8 @@ from itertools import combinations
 from typing import Any
 
 import clingo
-import networkx as nx
 
+from topomap import nx
 from topomap.experience import Experience
 from topomap.solver import ENCODINGS
 from topomap.topology import Gateway

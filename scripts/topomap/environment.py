@@ -11,8 +11,8 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import clingo
-import networkx as nx
 
+from topomap import nx
 from topomap.errors import InputError
 from topomap.topology import Gateway, Place, TopologicalMap, label
 

@@ -10,9 +10,8 @@ from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 import clingo
-import networkx as nx
 
-from topomap import maps
+from topomap import maps, nx
 from topomap.errors import InputError, printable
 from topomap.files import data
 from topomap.network import read_graphml

@@ -13,10 +13,10 @@ from collections import Counter
 from pathlib import Path
 from typing import Any
 
-import networkx as nx
 from defusedxml.common import DefusedXmlException
 from defusedxml.ElementTree import fromstring
 
+from topomap import nx
 from topomap.environment import Environment, by_bearing, flat_bearing, plain
 from topomap.errors import InputError
 from topomap.experience import LARGEST, MOST_SLOTS

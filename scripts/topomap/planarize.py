@@ -4,8 +4,7 @@ import random
 from collections import defaultdict
 from collections.abc import Sequence
 
-import networkx as nx
-
+from topomap import nx
 from topomap.topology import Gateway, Place, TopologicalMap
 
 ORDERS = 30  # of links, for a planar part

@@ -5,8 +5,7 @@ import random
 import re
 from collections.abc import Iterator
 
-import networkx as nx
-
+from topomap import nx
 from topomap.environment import EAST, NORTH, SOUTH, WEST, Environment
 from topomap.errors import InputError
 from topomap.topology import Place, TopologicalMap, label

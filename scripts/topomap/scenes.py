@@ -7,9 +7,7 @@ from itertools import pairwise
 from pathlib import PurePath
 from typing import Any
 
-import networkx as nx
-
-from topomap import maps, solver
+from topomap import maps, nx, solver
 from topomap.errors import InputError, printable
 from topomap.experience import LARGEST, MOST_SLOTS, Experience, parse
 from topomap.files import text

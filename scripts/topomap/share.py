@@ -1,7 +1,6 @@
 """Work in units, shared out among processes or the workers of a Dask cluster: results come in
 the order of the units, whoever has done them."""
 
-import asyncio
 import contextlib
 import logging
 import os
@@ -195,9 +194,11 @@ class Cluster:
                 self._client.cancel(given)
 
     def _result(self, future: Any, watch: Watch) -> Any:
+        from asyncio import run_coroutine_threadsafe  # takes as long to load as all else here
+
         # Asked for once: where Dask's own timeout ends, so does what is on its way.
         asked = self._client.gather(future, asynchronous=True)
-        coming = asyncio.run_coroutine_threadsafe(asked, self._client.loop.asyncio_loop)
+        coming = run_coroutine_threadsafe(asked, self._client.loop.asyncio_loop)
         try:
             watch.tick()
             while not futures.wait([coming], timeout=0.1).done:

@@ -11,9 +11,7 @@ from dataclasses import dataclass
 from itertools import islice
 from typing import Any
 
-import networkx as nx
-
-from topomap import explore, route, solver
+from topomap import explore, nx, route, solver
 from topomap.errors import InputError
 from topomap.experience import Experience
 from topomap.experience import explore as experienced
