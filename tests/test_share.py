@@ -1,6 +1,7 @@
 """Work shared out among processes and the workers of a Dask cluster: the same numbers and maps
 as by one, whoever is lost."""
 
+import gc
 import json
 import os
 import random
@@ -34,6 +35,19 @@ QUIET = Watch(quiet=True)
 def cluster():
     with local_cluster() as made:
         yield made.scheduler_address
+
+
+@pytest.fixture(autouse=True)
+def nothing_is_left_open():
+    """A client left to the collector may be closed while another one starts, which then waits
+    for ever."""
+    yield
+    eventually(lambda: not open_clients())
+
+
+def open_clients():
+    clients = [one for one in gc.get_objects() if isinstance(one, Client)]
+    return [one.status for one in clients if one.status not in ("closed", "newly-created")]
 
 
 def local_cluster():
@@ -345,6 +359,18 @@ def test_usage(capsys, monkeypatch):
         assert (out, err.count("\n")) == ("", 1), err
         assert fault in err
     assert main(["solve", GRID, "--jobs", "1", "--optimal"]) == 0
+
+
+def test_a_client_that_finds_no_cluster_is_closed(monkeypatch):
+    monkeypatch.setattr(share, "PATIENCE", 1)
+    gc.disable()
+    try:
+        for address in ("nowhere", "no://127.0.0.1:1", "tcp://127.0.0.1:1"):
+            with pytest.raises(InputError):
+                share.crew(dask=address)
+            assert not open_clients(), address
+    finally:
+        gc.enable()
 
 
 def test_without_dask(capsys, monkeypatch):

@@ -167,9 +167,8 @@ class Cluster:
             raise InputError("--dask: not installed; pip install 'topomap[dask]'") from None
         logging.getLogger("distributed").setLevel(logging.CRITICAL)
         self._address, self._dask = address, distributed
-        client: Any = distributed.Client  # without types
         try:
-            self._client = client(address, timeout=PATIENCE, set_as_default=False)
+            self._client = _client(distributed.Client, address)
         except (OSError, ValueError, TypeError) as error:
             fault = str(error).partition("\n")[0] or f"no answer within {PATIENCE} seconds"
             raise InputError(f"--dask {address}: {fault}") from None
@@ -217,6 +216,19 @@ class Cluster:
     def __exit__(self, *_: object) -> None:
         with contextlib.suppress(Exception):
             self._client.close(timeout=1)
+
+
+def _client(kind: Any, address: str) -> Any:
+    """A client of that cluster. One that finds none is closed here: left to Python's collector
+    it may be closed while another one starts, which then waits for a lock of its own."""
+    client = kind.__new__(kind)
+    try:
+        client.__init__(address, timeout=PATIENCE, set_as_default=False)
+    except BaseException:
+        with contextlib.suppress(Exception):
+            client.close(timeout=1)
+        raise
+    return client
 
 
 class _Wanted(Watch):
