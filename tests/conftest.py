@@ -13,6 +13,7 @@ import clingo
 import hypothesis  # noqa: F401 -- else at the end, beside threads: Python 3.11 has a fault there
 import pytest
 from oracle import Hypothesis, best, tree
+from topomap.cli import main
 from topomap.files import output
 from topomap.solver import FORMS, OPTIMIZING
 
@@ -159,3 +160,16 @@ def lacking(tool, why):
 def topomap():
     """The command ``topomap``, run from the repository's folder."""
     return lambda *arguments, **options: run("topomap", *arguments, **options)
+
+
+@pytest.fixture
+def inside(capsys, monkeypatch):
+    """The command in this process: sooner, for what does not hang on one of its own."""
+    monkeypatch.chdir(ROOT)
+
+    def call(*arguments):
+        capsys.readouterr()
+        status = main([*map(str, arguments)])
+        return subprocess.CompletedProcess(arguments, status, *capsys.readouterr())
+
+    return call

@@ -50,17 +50,23 @@ def test_the_checkers_agree_on_many_errors():
         agree_on_errors(random.Random(f"many errors {number}"), 14, marker=number % 3 == 2)
 
 
+@pytest.fixture(scope="module")
+def solved():
+    done = run("topomap", "solve", GRID, "--planar", "--closed", "--json")
+    assert done.returncode == 0
+    return done.stdout
+
+
 @pytest.fixture
-def maps(tmp_path):
+def maps(tmp_path, solved):
     """The planar, closed maps of the 3x3 snake, as solve writes them."""
     file = tmp_path / "maps.json"
-    done = run("topomap", "solve", GRID, "--planar", "--closed", "--json", "-o", file)
-    assert done.returncode == 0
+    file.write_text(solved)
     return file
 
 
-def test_maps_of_solve_are_sound(topomap, maps):
-    done = topomap("check", GRID, maps, "--planar", "--closed", "--bound", "12", "--json")
+def test_maps_of_solve_are_sound(inside, maps):
+    done = inside("check", GRID, maps, "--planar", "--closed", "--bound", "12", "--json")
     answer = json.loads(done.stdout)
     assert done.returncode == 0
     assert answer["unsound"] == []
@@ -69,18 +75,18 @@ def test_maps_of_solve_are_sound(topomap, maps):
 
 
 @pytest.mark.parametrize("options", [["--opt-mode=optN"], []])
-def test_maps_of_clingo_are_checked(topomap, tmp_path, options):
+def test_maps_of_clingo_are_checked(inside, tmp_path, options):
     file = tmp_path / "maps.json"
     parts = ["closed", "boundary", *(["minimal"] if options else [])]
     files = [ENCODINGS / f"{part}.lp" for part in ("topomap", *parts)]
     file.write_text(run("clingo", *files, GRID, "0", "--outf=2", *options).stdout)
-    assert topomap("check", GRID, file, "--closed", "--boundary").returncode == 0
-    done = topomap("check", GRID, file, "--closed", "--planar")
+    assert inside("check", GRID, file, "--closed", "--boundary").returncode == 0
+    done = inside("check", GRID, file, "--closed", "--planar")
     assert done.returncode == 1
     assert "violation(planar," in done.stdout
 
 
-def test_demands_that_a_document_makes_are_checked(topomap, maps):
+def test_demands_that_a_document_makes_are_checked(inside, maps):
     document = json.loads(maps.read_text())
     for key, value, fault in (
         ("parts", ["closed", "perpendicular"], "violation(perpendicular,"),
@@ -90,7 +96,7 @@ def test_demands_that_a_document_makes_are_checked(topomap, maps):
         ("count", 4, "count is 4, there are 3 maps"),
     ):
         maps.write_text(json.dumps({**document, key: value}))
-        done = topomap("check", GRID, maps)
+        done = inside("check", GRID, maps)
         assert (done.returncode, fault in done.stdout) == (1, True), done.stdout
 
 
@@ -115,25 +121,25 @@ def test_demands_that_a_document_makes_are_checked(topomap, maps):
         ("links", lambda said: said[0][0].__setitem__(1, float(said[0][0][1]))),
     ],
 )
-def test_what_else_a_map_says_is_verified(topomap, maps, key, change):
+def test_what_else_a_map_says_is_verified(inside, maps, key, change):
     document = json.loads(maps.read_text())
     change(document["maps"][1][key])
     maps.write_text(json.dumps(document))
-    done = topomap("check", GRID, maps)
+    done = inside("check", GRID, maps)
     assert done.returncode == 1
     assert done.stdout == f"{maps}: map 2: {key}: not what at says\n3 maps, 1 unsound\n"
 
 
 @pytest.mark.parametrize("key", ["places", "links", "paths", "faces", "pending", "dstate", "genus"])
 @pytest.mark.parametrize("said", [{}, "", None, 1.0, [[]], [None], [{}]])
-def test_what_a_map_says_is_of_the_right_kind(topomap, maps, key, said):
+def test_what_a_map_says_is_of_the_right_kind(inside, maps, key, said):
     document = json.loads(maps.read_text())
     document["maps"][1][key] = said
     maps.write_text(json.dumps(document))
-    assert f"map 2: {key}: not what at says\n" in topomap("check", GRID, maps).stdout
+    assert f"map 2: {key}: not what at says\n" in inside("check", GRID, maps).stdout
 
 
-def test_order_and_direction_do_not_matter(topomap, maps):
+def test_order_and_direction_do_not_matter(inside, maps):
     document = json.loads(maps.read_text())
     for one in document["maps"]:
         for key in ("at", "places", "links", "paths", "faces", "pending"):
@@ -142,24 +148,24 @@ def test_order_and_direction_do_not_matter(topomap, maps):
         one["faces"] = [face[1:] + face[:1] for face in one["faces"]]
         one["links"] = [link[::-1] for link in one["links"]]
     maps.write_text(json.dumps(document))
-    assert topomap("check", GRID, maps).returncode == 0
+    assert inside("check", GRID, maps).returncode == 0
 
 
-def test_no_maps_are_sound(topomap, maps):
+def test_no_maps_are_sound(inside, maps):
     maps.write_text("[]")
-    done = topomap("check", GRID, maps)
+    done = inside("check", GRID, maps)
     assert (done.returncode, done.stdout) == (0, "0 maps, none unsound\n")
 
 
-def test_maps_of_part_of_the_steps_are_told(topomap, maps):
+def test_maps_of_part_of_the_steps_are_told(inside, maps):
     document = json.loads(maps.read_text())
     at = [{"at": one["at"][:10]} for one in document["maps"][:1]] + document["maps"][1:]
     maps.write_text(json.dumps(at))
-    done = topomap("check", GRID, maps)
+    done = inside("check", GRID, maps)
     assert done.stdout == "3 maps, none unsound; 1 of part of the 16 steps\n"
 
 
-def test_other_faults_of_maps(topomap, maps, tmp_path):
+def test_other_faults_of_maps(inside, maps, tmp_path):
     document = json.loads(maps.read_text())
     first = document["maps"][0]
     for entries, fault in (
@@ -169,22 +175,22 @@ def test_other_faults_of_maps(topomap, maps, tmp_path):
         ([{"at": []}], "violation(exactly_one,0)"),
     ):
         maps.write_text(json.dumps(entries))
-        done = topomap("check", GRID, maps)
+        done = inside("check", GRID, maps)
         assert (done.returncode, fault in done.stdout) == (1, True), done.stdout
 
 
-def test_the_real_map_is_verified(topomap, tmp_path):
+def test_the_real_map_is_verified(inside, tmp_path):
     truth, instance = tmp_path / "truth.json", tmp_path / "grid.lp"
     call = ["generate", "grid", "3", "3", "--route", "snake"]
-    assert not topomap(*call, "--truth", truth, "-o", instance).returncode
+    assert not inside(*call, "--truth", truth, "-o", instance).returncode
     maps = tmp_path / "maps.json"
-    assert not topomap(
+    assert not inside(
         "solve", instance, "--closed", "--truth", truth, "--json", "-o", maps
     ).returncode
-    assert topomap("check", instance, maps, "--truth", truth).returncode == 0
-    assert "real: only --truth can tell" in topomap("check", instance, maps).stdout
+    assert inside("check", instance, maps, "--truth", truth).returncode == 0
+    assert "real: only --truth can tell" in inside("check", instance, maps).stdout
     maps.write_text(maps.read_text().replace('"real": true', '"real": false'))
-    done = topomap("check", instance, maps, "--truth", truth)
+    done = inside("check", instance, maps, "--truth", truth)
     assert (done.returncode, "real: it is the real map" in done.stdout) == (1, True)
 
 
@@ -214,10 +220,10 @@ def test_the_real_map_is_verified(topomap, tmp_path):
         json.dumps([{"at": [[0, 0, 0]] * 1000}]),
     ],
 )
-def test_what_is_no_document_of_maps_is_refused(topomap, tmp_path, text):
+def test_what_is_no_document_of_maps_is_refused(inside, tmp_path, text):
     file = tmp_path / "maps.json"
     file.write_text(text)
-    done = topomap("check", GRID, file)
+    done = inside("check", GRID, file)
     assert done.returncode == 2
     assert done.stdout == ""
     (line,) = done.stderr.splitlines()
@@ -241,18 +247,18 @@ def test_check_lp_gives_one_answer_without_anything():
     assert not done.stderr
 
 
-def test_a_file_of_several_instances(topomap, tmp_path):
+def test_a_file_of_several_instances(inside, tmp_path):
     maps = tmp_path / "maps.json"
     other = "instances/grid-3x4-paper.lp"
-    assert not topomap("solve", GRID, other, "--optimal", "--json", "-o", maps).returncode
+    assert not inside("solve", GRID, other, "--optimal", "--json", "-o", maps).returncode
     for file, number in ((GRID, 2), (other, 8)):
-        done = topomap("check", file, maps)
+        done = inside("check", file, maps)
         assert done.stdout == f"{number} maps, none unsound\n"
-    assert topomap("check", "instances/grid-4x4-snake.lp", maps).returncode == 2
+    assert inside("check", "instances/grid-4x4-snake.lp", maps).returncode == 2
 
 
 @pytest.mark.long
-def test_a_circular_path_may_begin_anywhere(topomap, tmp_path):
+def test_a_circular_path_may_begin_anywhere(inside, tmp_path):
     """Either way round; but its order counts."""
     made = instance(grid(1, 5, "cylinder"), "walk", steps=12)
     file, seen = tmp_path / "maps.json", tmp_path / "ring.lp"
@@ -265,7 +271,7 @@ def test_a_circular_path_may_begin_anywhere(topomap, tmp_path):
     for way in ways + wrong:
         others = [path for path in found["paths"] if path != ring]
         file.write_text(json.dumps({"maps": [{**found, "paths": [way, *others]}]}))
-        done = topomap("check", seen, file)
+        done = inside("check", seen, file)
         assert done.returncode == 1
         assert "path_circular" in done.stdout
         assert ("paths: not what at says" in done.stdout) == (way in wrong)

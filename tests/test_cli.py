@@ -20,22 +20,22 @@ def found(done):
 
 
 @pytest.mark.parametrize("part", ["", *(p for p in PARTS)])
-def test_solve_gives_the_maps_of_clingo(topomap, part):
-    done = topomap("solve", GRID, *([f"--{part}"] if part else []), "--json")
+def test_solve_gives_the_maps_of_clingo(inside, part):
+    done = inside("solve", GRID, *([f"--{part}"] if part else []), "--json")
     assert done.returncode == 0
     parts = (part,) if part else ()
     assert found(done) == answers(parts, read(ROOT / GRID).facts())
     assert json.loads(done.stdout)["complete"] is True
 
 
-def test_solve_bound_and_horizon(topomap):
-    done = topomap("solve", GRID, "--bound", "9", "--horizon", "12", "--planar", "--json")
+def test_solve_bound_and_horizon(inside):
+    done = inside("solve", GRID, "--bound", "9", "--horizon", "12", "--planar", "--json")
     facts = read(ROOT / GRID).cut(12).facts()
     assert found(done) == answers(("planar", "bound"), facts, "-c", "places=9")
 
 
-def test_a_map_tells_all_about_itself(topomap):
-    done = topomap("solve", GRID, "--closed", "--planar", "--perpendicular", "--json")
+def test_a_map_tells_all_about_itself(inside):
+    done = inside("solve", GRID, "--closed", "--planar", "--perpendicular", "--json")
     (only,) = json.loads(done.stdout)["maps"]
     assert len(only["places"]) == 9
     assert {tuple(p["gateways"]) for p in only["places"] if len(p["gateways"]) == 4} == {
@@ -58,29 +58,29 @@ def test_a_map_tells_all_about_itself(topomap):
         ([GRID, "--horizon", "0"], "best so far", 1, [2, 1]),
     ],
 )
-def test_optimal_says_which_kind(topomap, arguments, kind, count, cost):
-    done = topomap("solve", *arguments, "--optimal", "--json")
+def test_optimal_says_which_kind(inside, arguments, kind, count, cost):
+    done = inside("solve", *arguments, "--optimal", "--json")
     answer = json.loads(done.stdout)
     assert (answer["kind"], answer["count"], answer["cost"]) == (kind, count, cost)
     assert answer["proved"] is answer["complete"] is True
-    text = topomap("solve", *arguments, "--optimal").stdout.splitlines()
+    text = inside("solve", *arguments, "--optimal").stdout.splitlines()
     assert len(text) == count + 1
     assert text[-1].startswith(f"{count} {kind} map")
 
 
-def test_several_instances(topomap):
-    done = topomap("solve", GRID, "instances/grid-3x4-paper.lp", "--optimal", "--json")
+def test_several_instances(inside):
+    done = inside("solve", GRID, "instances/grid-3x4-paper.lp", "--optimal", "--json")
     answer = json.loads(done.stdout)
     assert done.returncode == 0
     assert answer["complete"] is True
     assert [result["count"] for result in answer["results"]] == [2, 8]
 
 
-def test_no_map_is_status_1(topomap):
-    done = topomap("solve", GRID, "--bound", "3", "--json")
+def test_no_map_is_status_1(inside):
+    done = inside("solve", GRID, "--bound", "3", "--json")
     assert done.returncode == 1
     assert json.loads(done.stdout)["maps"] == []
-    assert topomap("count", GRID, "--bound", "3").returncode == 1
+    assert inside("count", GRID, "--bound", "3").returncode == 1
 
 
 def test_a_limit_is_status_3_and_says_so(topomap):
@@ -176,13 +176,13 @@ def test_an_interrupt_keeps_what_was_found(tmp_path, number):
     assert {path.name for path in tmp_path.iterdir()} - {"maps.json.part"} == {"maps.json"}
 
 
-def test_count(topomap):
-    done = topomap("count", "instances/grid-3x4-paper.lp", "--planar", "--json")
+def test_count(inside):
+    done = inside("count", "instances/grid-3x4-paper.lp", "--planar", "--json")
     answer = json.loads(done.stdout)
     assert answer["complete"] is True
     assert (answer["nodes"], answer["maps"], answer["final"]) == (1722, 1425, 507)
     assert (answer["closed"], answer["optimal"], len(answer["per_step"])) == (3, 1, 22)
-    assert "1,722" in topomap("count", "instances/grid-3x4-paper.lp", "--planar").stdout
+    assert "1,722" in inside("count", "instances/grid-3x4-paper.lp", "--planar").stdout
 
 
 def test_the_real_map_is_marked(topomap, tmp_path):
@@ -245,11 +245,11 @@ BAD = {
 
 
 @pytest.mark.parametrize("text", BAD)
-def test_bad_instances_are_refused_in_one_line(topomap, tmp_path, text):
+def test_bad_instances_are_refused_in_one_line(inside, tmp_path, text):
     file = tmp_path / "bad.lp"
     file.write_text(text)
     for command in (["solve"], ["count", "--json"]):
-        done = topomap(command[0], file, *command[1:])
+        done = inside(command[0], file, *command[1:])
         assert (done.returncode, done.stdout) == (2, "")
         assert done.stderr.startswith(f"{file}:")
         assert done.stderr.count("\n") == 1
@@ -309,16 +309,16 @@ def test_comments_strings_and_layout_are_read(tmp_path):
         ["generate", "grid", "2", "2", "--route=--"],
     ],
 )
-def test_bad_usage_is_one_line(topomap, arguments):
-    done = topomap(*arguments)
+def test_bad_usage_is_one_line(inside, arguments):
+    done = inside(*arguments)
     assert (done.returncode, done.stdout) == (2, "")
     assert done.stderr.count("\n") == 1
     assert done.stderr.startswith("topomap")
 
 
 @pytest.mark.parametrize("command", ["", "generate", "solve", "count", "table", "family"])
-def test_help_has_an_example(topomap, command):
-    done = topomap(*command.split(), "--help")
+def test_help_has_an_example(inside, command):
+    done = inside(*command.split(), "--help")
     assert done.returncode == 0
     assert "exit status" in done.stdout
     assert "example" in done.stdout
