@@ -210,14 +210,19 @@ def check(scene):
     return lines
 
 
-@pytest.mark.parametrize("number", range(12))
+def soon(number):
+    """The first numbers; that of a large map is for the long run."""
+    return [n if n != 4 else pytest.param(n, marks=pytest.mark.long) for n in range(number)]
+
+
+@pytest.mark.parametrize("number", soon(12))
 def test_planar_maps_are_drawn_without_crossings(number):
     scene = some_map(number, "planar")
     check(scene)
     assert legible(scene)
 
 
-@pytest.mark.parametrize("number", range(10))
+@pytest.mark.parametrize("number", soon(10))
 def test_of_other_maps_the_links_that_cross_are_drawn_so(number):
     scene = some_map(number)
     check(scene)
@@ -350,7 +355,7 @@ def test_faces_are_round_their_numbers():
             assert round_it == [f"face-{index}"] * (index - 1 != laid.outer)
 
 
-@pytest.mark.parametrize("number", range(6))
+@pytest.mark.parametrize("number", soon(6))
 def test_steps_are_on_the_right_of_their_ways(number):
     scene = some_map(number)
     world = scene.world
@@ -373,6 +378,7 @@ def test_steps_are_on_the_right_of_their_ways(number):
         assert x * v - y * u < 0
 
 
+@pytest.mark.long
 def test_the_same_bytes_for_the_same_map(tmp_path):
     """In processes that order sets in other ways."""
     program = "from topomap.cli import main; assert not any(main(call) for call in {})"
@@ -387,12 +393,12 @@ def test_the_same_bytes_for_the_same_map(tmp_path):
         assert one.read_bytes() == other.read_bytes()
 
 
-def test_maps_from_a_file_or_a_pipe(tmp_path, topomap):
+def test_maps_from_a_file_or_a_pipe(tmp_path, topomap, inside):
     maps = tmp_path / "maps.json"
-    assert not topomap("solve", GRID, "--optimal", "--json", "-o", maps).returncode
+    assert not inside("solve", GRID, "--optimal", "--json", "-o", maps).returncode
     pictures = [tmp_path / name for name in ("a.svg", "b.svg")]
     for source, picture in zip((maps, GRID), pictures, strict=True):
-        assert not topomap("draw", source, "--map", "1", "-o", picture).returncode
+        assert not inside("draw", source, "--map", "1", "-o", picture).returncode
     at = [json.loads(maps.read_text())["maps"][n]["at"] for n in (0, 1)]
     same = pictures[0].read_bytes() == pictures[1].read_bytes()
     assert same == (at[0] < at[1])
@@ -567,6 +573,7 @@ def test_no_map_and_no_time_leave_no_picture(tmp_path):
         assert not (tmp_path / "map.svg").exists()
 
 
+@pytest.mark.long
 def test_interrupted_figures_say_so(tmp_path):
     call = [sys.executable, "-m", "topomap", "figures", "-d", str(tmp_path)]
     with subprocess.Popen(call, cwd=ROOT, stderr=subprocess.PIPE, text=True) as process:

@@ -115,8 +115,11 @@ def strikes(name, command, folder, seeds, again):
     return hits
 
 
-@pytest.mark.parametrize("name", COMMANDS)
-@pytest.mark.parametrize("seeds", [range(1), pytest.param(range(20), marks=pytest.mark.long)])
+SOON = [(name, range(1)) for name in ("solve", "count")]
+LATER = [pytest.param(name, range(20), marks=pytest.mark.long) for name in COMMANDS]
+
+
+@pytest.mark.parametrize(("name", "seeds"), [*SOON, *LATER])
 def test_strikes(tmp_path, name, seeds, record_property):
     hits = strikes(name, COMMANDS[name], tmp_path, seeds, again=1 if len(seeds) == 1 else 0.3)
     assert hits >= len(seeds) // 4

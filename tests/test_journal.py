@@ -5,6 +5,7 @@ import random
 import re
 import subprocess
 import time
+from functools import cache
 
 import pytest
 from conftest import BIN, ROOT, TRIED, run
@@ -28,6 +29,11 @@ LONG_RUNS = {
     "solve by two": ["solve", PAPER, "--jobs", "2"],
     "solve two": ["solve", GRID, PAPER, "--json"],
 }
+
+
+@cache
+def counted():
+    return run("topomap", "count", PAPER).stdout
 
 
 def slow(name):
@@ -140,7 +146,7 @@ def test_without_resume_a_run_begins_anew(tmp_path, monkeypatch):
     part = tmp_path / "count.txt.part"
     part.write_text(part.read_text().replace("[1, 1]", "[7, 7]"))
     assert main(["count", PAPER, "-o", str(file)]) == 0
-    assert file.read_text() == run("topomap", "count", PAPER).stdout
+    assert file.read_text() == counted()
 
 
 @pytest.mark.parametrize(
@@ -175,7 +181,7 @@ def test_a_journal_that_is_torn_or_of_another_run(tmp_path, monkeypatch, capsys,
         assert part.read_text() == changed
     else:
         assert status == 0
-        assert file.read_text() == run("topomap", "count", PAPER).stdout
+        assert file.read_text() == counted()
 
 
 LAST = r"(.*) \w+\n$"  # the line of a map of a part that was cut

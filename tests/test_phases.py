@@ -211,7 +211,7 @@ def agree_on_bounds(number, most):
         agree(experience, horizon, BOUNDED, False, places, ("closed",))
 
 
-@pytest.mark.parametrize("block", range(2))
+@pytest.mark.parametrize("block", [0, pytest.param(1, marks=pytest.mark.long)])
 def test_bounds(block):
     for number in range(5):
         agree_on_bounds(f"{block}/{number}", 14)
@@ -282,7 +282,7 @@ def refuses_what_is_not_planar(draw, most):
     return len(every - left)
 
 
-@pytest.mark.parametrize("often", [1, plane.EVERY])
+@pytest.mark.parametrize("often", [1, pytest.param(plane.EVERY, marks=pytest.mark.long)])
 def test_planarity_by_clauses(monkeypatch, often):
     monkeypatch.setattr(plane, "EVERY", often)
     refused = [
