@@ -48,6 +48,7 @@ searches without it, reads answers, checks and compares them.
 ``svg``             small pictures for a page
 ``page``            the page of an exploration (page.html, page.css, page.js)
 ``family``          files that list the instances of a batch
+``nx``              networkx, loaded where it is first used
 ``files``           inputs within a limit; outputs that are whole or not there
 ``commands``        what each subcommand does
 ``pictures``        the same of those that draw
