@@ -61,6 +61,8 @@ def test_the_readme_says_how_often_what_was_tried():
     number = {what: f"{times:,}" for what, times in run["tried"].items()}
     queries = number["queries on which ways to an answer were compared"]
     bad = " + ".join(number[f"bad {what} refused"] for what in ("files", "routes", "command lines"))
+    asked = sum(n for what, n in run["tried"].items() if what.startswith("statements asked"))
+    explained = number["explanations held against all assignments"]
     wrong = number["maps with errors judged by both checkers"]
     rows = [
         f"{number['random experiences']} random experiences, {queries} queries",
@@ -68,6 +70,9 @@ def test_the_readme_says_how_often_what_was_tried():
         bad,
         f"{number['strikes']} strikes",
         f"{number['cuts of long runs, resumed']} cuts",
+        f"{asked:,} statements, {explained} explanations, "
+        f"{number['plans against all walks']} plans, {number['statuses of a follower']} steps, "
+        f"{number['experiences with misreadings']} experiences",
     ]
     assert (run["failed"], run["error"]) == (0, 0)
     for row in rows:
