@@ -4,6 +4,7 @@ import json
 import re
 import signal
 import subprocess
+import sys
 import time
 
 import pytest
@@ -322,6 +323,15 @@ def test_help_has_an_example(inside, command):
     assert done.returncode == 0
     assert "exit status" in done.stdout
     assert "example" in done.stdout
+
+
+def test_a_command_starts_without_what_few_need():
+    """Each of these takes as long to load as all else together, or longer."""
+    program = "import sys, topomap.cli; print(*sys.modules)"
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
+    loaded = set(done.stdout.split())
+    assert "clingo" in loaded
+    assert not loaded & {"networkx", "numpy", "scipy", "matplotlib", "distributed", "asyncio"}
 
 
 def test_a_closed_pipe_is_no_error():

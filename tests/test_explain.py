@@ -202,7 +202,7 @@ def demand_reasons(experience, answer, wanted, bound):
     assert alone == {*names}
 
 
-CASES = [20, pytest.param(500, marks=pytest.mark.long)]
+CASES = [20, pytest.param(1100, marks=pytest.mark.long)]
 
 
 @pytest.mark.parametrize("cases", CASES)

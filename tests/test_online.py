@@ -99,7 +99,7 @@ def test_each_step_of_random_experiences(cases):
         assert list(follow_all(experience, draw.random() < 0.5, bound))
 
 
-@pytest.mark.parametrize("cases", [30, pytest.param(800, marks=pytest.mark.long)])
+@pytest.mark.parametrize("cases", [30, pytest.param(1500, marks=pytest.mark.long)])
 def test_each_step_of_walks_with_a_marker(cases):
     told = 0
     for number in range(cases):
