@@ -15,7 +15,8 @@ import pytest
 from oracle import Hypothesis, best, tree
 from topomap.cli import main
 from topomap.files import output
-from topomap.solver import FORMS, OPTIMIZING
+from topomap.solver import FORMS
+from topomap.vocabulary import OPTIMIZING
 
 ROOT = Path(__file__).resolve().parents[1]
 ENCODINGS = ROOT / "encodings"

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 
 from topomap import search
 from topomap.experience import MARKER, Experience, parse
-from topomap.solver import Query
+from topomap.query import Query
 from worlds import random_experience
 
 At = list[tuple[int, int, int]]

@@ -28,8 +28,8 @@ from clingo import ast
 from conftest import ENCODINGS, ROOT
 from corpus import Query, queries, sizes
 from topomap.errors import InputError
-from topomap.experience import LARGEST
 from topomap.files import output
+from topomap.options import LARGEST
 from tqdm import tqdm
 
 LISTED = ROOT / "tests/equivalent.toml"

@@ -16,7 +16,8 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from topomap import search, solver
 from topomap.check import by_definition, by_rules
-from topomap.solver import FORMS, Query, Watch
+from topomap.query import Query
+from topomap.solver import FORMS, Watch
 from topomap.statistics import Tally
 from worlds import WORLDS, random_experience
 

@@ -15,7 +15,8 @@ from topomap.ask import Answers
 from topomap.check import by_definition, by_rules
 from topomap.errors import InputError
 from topomap.experience import parse, read
-from topomap.solver import FORMS, Query, Stopped, Watch, forget, hypotheses
+from topomap.query import Query
+from topomap.solver import FORMS, Stopped, Watch, forget, hypotheses
 from worlds import WORLDS, random_experience
 
 SIGNS = {

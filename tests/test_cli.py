@@ -10,7 +10,7 @@ import time
 import pytest
 from conftest import BIN, ROOT, answers
 from topomap.experience import read
-from topomap.solver import PARTS
+from topomap.vocabulary import PARTS
 
 GRID = "instances/grid-3x3-snake.lp"
 LARGE = "instances/manhattan-tour40-signs30.lp"

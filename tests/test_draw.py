@@ -25,8 +25,9 @@ from topomap.generate import instance
 from topomap.layout import layout
 from topomap.pictures import FORMATS
 from topomap.planarize import lacking, planar_part, routed
+from topomap.query import Query
 from topomap.scenes import Scene
-from topomap.solver import Query, Watch
+from topomap.solver import Watch
 from topomap.topology import TopologicalMap, gid, label
 from worlds import WORLDS, random_experience
 

@@ -10,7 +10,7 @@ from conftest import ENCODINGS, PARTS, ROOT, answers, run
 from mutate import named_files, statements
 from topomap.experience import read
 from topomap.solver import FORMS
-from topomap.solver import PARTS as DRIVER_PARTS
+from topomap.vocabulary import PARTS as DRIVER_PARTS
 
 FACTS = read(ROOT / "instances/grid-3x3-snake.lp").facts()
 ALL = (*PARTS, "bound", "minimal", "genus")

@@ -18,7 +18,8 @@ from topomap.experience import explore as experienced
 from topomap.experience import read
 from topomap.explore import Standing, plan, predict, tells
 from topomap.generate import instance
-from topomap.solver import Query, Watch, hypotheses
+from topomap.query import Query
+from topomap.solver import Watch, hypotheses
 from walks import alike, asked, best, gone, same, scattered, sight, standing
 
 

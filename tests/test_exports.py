@@ -22,10 +22,11 @@ from conftest import ROOT, TRIED, lacking, run
 from topomap import exports, maps, solver
 from topomap.errors import InputError
 from topomap.experience import Experience, explore, read
+from topomap.query import Query
 from topomap.report import map_json
 from topomap.scenes import Scene
 from topomap.search import hypotheses
-from topomap.solver import Query, Watch
+from topomap.solver import Watch
 from topomap.topology import gid
 from worlds import WORLDS, random_experience, random_world
 

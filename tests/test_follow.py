@@ -17,9 +17,9 @@ from topomap.environment import EAST, grid
 from topomap.errors import InputError
 from topomap.experience import explore, parse, read
 from topomap.following import Record, decoded
+from topomap.query import Query
 from topomap.route import snake
 from topomap.search import depth_first, root
-from topomap.solver import Query
 from worlds import random_experience
 
 GRID = ROOT / "instances/grid-3x3-snake.lp"

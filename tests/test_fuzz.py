@@ -24,9 +24,10 @@ import pytest
 from topomap import beyond, cli, exports, figure4, search
 from topomap.environment import grid
 from topomap.generate import instance
+from topomap.query import Query
 from topomap.report import Report
 from topomap.scenes import Scene
-from topomap.solver import Query, Watch
+from topomap.solver import Watch
 from worlds import random_experience
 
 SECONDS = 10

@@ -9,7 +9,8 @@ import pytest
 from conftest import ENCODINGS, ROOT, run
 from flawed import INSTANCES
 from topomap.errors import InputError
-from topomap.experience import ARITY, LARGEST, parse
+from topomap.experience import ARITY, parse
+from topomap.options import LARGEST
 from worlds import random_experience
 
 PROGRAM = (ENCODINGS / "input.lp").read_text()

@@ -13,8 +13,9 @@ from topomap import beyond, search, solver, statistics
 from topomap.cli import main
 from topomap.experience import read
 from topomap.journal import Journal
+from topomap.query import Query
 from topomap.share import ALONE
-from topomap.solver import Query, Watch
+from topomap.solver import Watch
 
 GRID = str(ROOT / "instances/grid-3x3-snake.lp")
 PAPER = str(ROOT / "instances/grid-3x4-paper.lp")

@@ -10,8 +10,9 @@ from topomap import search, solver
 from topomap.check import by_definition, by_rules
 from topomap.environment import EAST, grid
 from topomap.experience import Experience, explore, parse, read
+from topomap.query import Query
 from topomap.route import snake
-from topomap.solver import FORMS, Query, Watch
+from topomap.solver import FORMS, Watch
 
 QUIET = Watch(quiet=True)
 # Turns after the snake, and how many places the false one of two maps has that look alike: the

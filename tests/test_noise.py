@@ -15,7 +15,8 @@ from topomap.cli import main
 from topomap.environment import grid
 from topomap.errors import InputError
 from topomap.experience import Experience, explore, parse, read
-from topomap.solver import Query, Watch, misreadings
+from topomap.query import Query
+from topomap.solver import Watch, misreadings
 from worlds import random_experience
 
 QUIET = Watch(quiet=True)

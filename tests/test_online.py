@@ -12,13 +12,14 @@ from oracle import Hypothesis, best, tree
 from topomap import online, search, solver
 from topomap.experience import MARKER, read
 from topomap.online import Certain, Follower, crossed
-from topomap.solver import Query, Watch
+from topomap.query import Query
+from topomap.solver import Watch
 from worlds import WORLDS, random_experience
 
 WATCH = Watch(quiet=True)
 
 
-def begun(experience, planar=False, bound=None, most=online.MOST):
+def begun(experience, planar=False, bound=None, most=online.MOST_COUNTED):
     start = experience.views[0], experience.landmarks[0]
     return Follower(experience.slots, *start, planar, bound, most, marks(experience, 0))
 

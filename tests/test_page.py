@@ -23,10 +23,11 @@ from topomap.agreement import Agreement
 from topomap.environment import grid
 from topomap.experience import parse, read
 from topomap.page import FOLDER, Exploration
+from topomap.query import Query
 from topomap.replay import SHOWN, fate, replay
 from topomap.scenes import Scene
 from topomap.search import breadth_first, root
-from topomap.solver import Query, Watch
+from topomap.solver import Watch
 from worlds import WORLDS, random_experience
 
 GRID = "instances/grid-3x3-snake.lp"

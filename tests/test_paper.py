@@ -8,7 +8,8 @@ from conftest import COLUMNS, ROOT, Truth, answers, run
 from topomap import figure4
 from topomap.experience import read
 from topomap.journal import Journal
-from topomap.solver import FORMS, Query, Watch
+from topomap.query import Query
+from topomap.solver import FORMS, Watch
 from topomap.statistics import tree
 
 IDS = [f"{c['environment']}{'-planar' * c['planarity']}" for c in COLUMNS]

@@ -13,7 +13,8 @@ from topomap.check import by_definition
 from topomap.environment import grid, maze, world
 from topomap.experience import Experience, explore
 from topomap.generate import instance
-from topomap.solver import FORMS, Program, Query, Stopped, Watch
+from topomap.query import Query
+from topomap.solver import FORMS, Program, Stopped, Watch
 from topomap.topology import TopologicalMap
 from worlds import WORLDS, random_world, with_marker
 

@@ -13,8 +13,9 @@ from topomap.environment import grid
 from topomap.experience import Experience, read
 from topomap.generate import instance
 from topomap.journal import Journal
+from topomap.query import Query
 from topomap.share import crew
-from topomap.solver import Query, Stopped, Watch
+from topomap.solver import Stopped, Watch
 from topomap.statistics import Tally, searched
 from worlds import random_experience
 

@@ -21,8 +21,10 @@ from topomap.cli import main
 from topomap.errors import InputError
 from topomap.experience import read
 from topomap.journal import Journal
-from topomap.solver import PARTS, Query, Stopped, Watch, count, demand_cover, hypotheses
+from topomap.query import Query
+from topomap.solver import Stopped, Watch, count, demand_cover, hypotheses
 from topomap.statistics import tree
+from topomap.vocabulary import PARTS
 from worlds import random_experience
 
 GRID = str(ROOT / "instances/grid-3x3-snake.lp")

@@ -10,8 +10,9 @@ from topomap.environment import grid, world
 from topomap.errors import InputError
 from topomap.experience import explore, read
 from topomap.family import expand
+from topomap.query import Query
 from topomap.simulate import Robot, random_walk, reached
-from topomap.solver import Query, Watch
+from topomap.solver import Watch
 from worlds import random_world
 
 ALL = Query(frozenset())

@@ -16,11 +16,14 @@ import clingo
 
 from topomap import statements
 from topomap.commands import STOPS, exit_status
-from topomap.experience import LARGEST, Experience, read
+from topomap.experience import Experience, read
 from topomap.files import output
+from topomap.options import LARGEST
+from topomap.query import Query
 from topomap.report import map_json, map_line
-from topomap.solver import MEMORY, PARTS, Found, Program, Query, Watch, calls
+from topomap.solver import MEMORY, Found, Program, Watch, calls
 from topomap.statements import Statement
+from topomap.vocabulary import PARTS
 
 BUDGETS = ("1000", "30000", "umax")  # conflicts: what is hard to settle holds up nothing else
 Literal = tuple[str, bool]  # a term of a statement, and whether it holds

@@ -9,8 +9,9 @@ from typing import Any
 from topomap.environment import grid
 from topomap.generate import Instance, instance
 from topomap.journal import Journal
+from topomap.query import Query
 from topomap.share import Crew
-from topomap.solver import Query, Stopped, Watch
+from topomap.solver import Stopped, Watch
 from topomap.statistics import final_maps, searched
 
 VERDICT = "Counted by depth-first search, the final maps by clingo too where it finished."

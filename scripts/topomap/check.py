@@ -10,7 +10,7 @@ import clingo
 
 from topomap import nx
 from topomap.experience import Experience
-from topomap.solver import ENCODINGS
+from topomap.folders import ENCODINGS
 from topomap.topology import Gateway
 
 At = Sequence[tuple[int, int, int]]  # at(T,P,S)

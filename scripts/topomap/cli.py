@@ -1,33 +1,18 @@
 """The command ``topomap``."""
 
 import argparse
+import importlib
 import math
 import re
 import sys
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from functools import cache
 from typing import Any, NoReturn
 
-from topomap import (
-    __version__,
-    ask,
-    commands,
-    explain,
-    explore,
-    exploring,
-    exports,
-    following,
-    maps,
-    online,
-    page,
-    pictures,
-    simulating,
-    statements,
-)
-from topomap.environment import MOST_STEPS
+from topomap import __version__
 from topomap.errors import BAD_INPUT, DONE, INTERRUPTED, PARTIAL, InputError, say
-from topomap.experience import LARGEST
-from topomap.solver import FORMS, OPTIMIZING, PARTS, PRUNING
+from topomap.options import EXPORTS, LARGEST, LONGEST_WALK, MOST_COUNTED, MOST_STEPS
+from topomap.vocabulary import DEMANDS, FORMS, OPTIMIZING, PARTS, PROPERTIES, PRUNING, VOCABULARY
 
 STATUS = """\
 exit status: 0 done; 1 the answer is no (the table differs, no map, an unsound map);
@@ -48,8 +33,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command; returns its exit status."""
     try:
         try:
-            args = parse(arguments)
-            status: int = args.run(args)
+            words = sys.argv[1:] if arguments is None else [*arguments]
+            if words[:1] == ["clingo"]:  # whose options are clingo's own
+                return int(_loaded("clingo_command:run")(words[1:]))
+            args = parse(words)
+            status: int = _loaded(args.run)(args)
         except SystemExit:  # --help and --version
             status = DONE
         sys.stdout.flush()
@@ -70,16 +58,23 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return BAD_INPUT
 
 
-def parse(words: Sequence[str] | None) -> argparse.Namespace:
+def _loaded(name: str) -> Any:
+    """The function that does what a subcommand says, ``module:function``."""
+    module, _, function = name.partition(":")
+    return getattr(importlib.import_module(f"topomap.{module}"), function)
+
+
+def parse(words: Sequence[str]) -> argparse.Namespace:
     """The arguments of a call. Raises InputError on bad usage."""
-    args = _parser().parse_args(words)
+    args = _parser(words[0] if words and words[0] in SUBCOMMANDS else None).parse_args(words)
     if [] in vars(args).values():  # what Python 3.11 makes of --name=--
         raise InputError("topomap: -- is not a value (see topomap --help)")
     return args
 
 
 @cache
-def _parser() -> Parser:
+def _parser(name: str | None) -> Parser:
+    """A parser of the subcommand of that name, or of all."""
     parser = Parser(
         prog="topomap",
         description="Exact topological map-building: every map consistent with an exploration.",
@@ -88,25 +83,8 @@ def _parser() -> Parser:
     )
     parser.add_argument("--version", action="version", version=f"topomap {__version__}")
     group = parser.add_subparsers(metavar="COMMAND", required=True)
-    _add_generate(group)
-    _add_solve(group)
-    _add_ask(group)
-    _add_explain(group)
-    _add_explore(group)
-    _add_follow(group)
-    _add_simulate(group)
-    _add_count(group)
-    _add_search(group)
-    _add_branching(group)
-    _add_check(group)
-    _add_table(group)
-    _add_family(group)
-    _add_draw(group)
-    _add_show(group)
-    _add_report(group)
-    _add_figures(group)
-    _add_export(group)
-    _add_import(group)
+    for add in [SUBCOMMANDS[name]] if name else SUBCOMMANDS.values():
+        add(group)
     return parser
 
 
@@ -143,7 +121,7 @@ def _add_generate(group: Any) -> None:
     command = _command(
         group,
         "generate",
-        commands.generate,
+        "commands:generate",
         "explore an environment and write what is seen as an instance",
         """\
   topomap generate grid 3 4 --route snake -o grid-3x4-snake.lp
@@ -279,7 +257,7 @@ def _add_solve(group: Any) -> None:
     command = _command(
         group,
         "solve",
-        commands.solve,
+        "commands:solve",
         "enumerate the maps that are consistent with an exploration",
         """\
   topomap solve instances/grid-3x3-snake.lp --planar --closed
@@ -327,7 +305,7 @@ def _add_optimal(command: Parser) -> None:
 def _add_encoding(command: Parser) -> None:
     command.add_argument(
         "--encoding",
-        choices=tuple(FORMS),
+        choices=FORMS,
         default="fast",
         help="which rules clingo is given: encodings/fast/, or those that state the theory "
         "(default: %(default)s)",
@@ -363,14 +341,14 @@ def _add_ask(group: Any) -> None:
     command = _command(
         group,
         "ask",
-        ask.ask,
+        "ask:ask",
         "tell of each statement whether it holds in all maps that are consistent with an "
         "exploration, in some or in none, with maps that show it",
         f"""\
   topomap ask instances/grid-4x4-snake.lp "same(3,12)" "places < 12" --planar --closed
   topomap ask instances/grid-3x3-snake.lp "linked(3,2,12,0)" "not planar" --optimal --json
 
-{statements.VOCABULARY}""",
+{VOCABULARY}""",
     )
     command.add_argument("instance", metavar="INSTANCE")
     command.add_argument("statement", nargs="+", metavar="STATEMENT")
@@ -383,7 +361,7 @@ def _add_explain(group: Any) -> None:
     command = _command(
         group,
         "explain",
-        explain.explain,
+        "explain:explain",
         "tell why a statement about the maps is impossible, or certain, or why there is no map: "
         "reasons none of which can be spared. (Of all maps, not of the optimal ones: that "
         "another map is better is no reason of this kind)",
@@ -392,18 +370,18 @@ def _add_explain(group: Any) -> None:
   topomap explain instances/grid-4x4-snake.lp "not same(0,30)" --planar --bound 16
   topomap explain instances/manhattan-tour20.lp --closed
 
-{statements.VOCABULARY}""",
+{VOCABULARY}""",
     )
     command.add_argument("instance", metavar="INSTANCE")
     command.add_argument("statement", nargs="?", metavar="STATEMENT")
-    _add_query(command, explain.DEMANDS)
+    _add_query(command, DEMANDS)
 
 
 def _add_count(group: Any) -> None:
     command = _command(
         group,
         "count",
-        commands.count,
+        "commands:count",
         "count the search tree of an exploration, as the paper's Figure 4 does",
         """\
   topomap count instances/grid-4x4-snake.lp --planar --bound 16
@@ -420,7 +398,7 @@ def _add_check(group: Any) -> None:
     command = _command(
         group,
         "check",
-        commands.check,
+        "commands:check",
         "check maps that anyone made, by encodings/check.lp and by a second checker "
         "(a time limit ends it between two maps)",
         """\
@@ -444,14 +422,14 @@ def _add_check(group: Any) -> None:
         metavar="K",
         help="a map may disbelieve K views (its key misread), and no more than it says itself",
     )
-    _add_query(command, maps.DEMANDS, horizon=False)
+    _add_query(command, PROPERTIES, horizon=False)
 
 
 def _add_search(group: Any) -> None:
     command = _command(
         group,
         "search",
-        commands.search_tree,
+        "commands:search_tree",
         "search the tree of an exploration, as the paper does, without clingo",
         """\
   topomap search instances/grid-4x4-snake.lp --planar --bound 16
@@ -473,7 +451,7 @@ def _add_branching(group: Any) -> None:
     command = _command(
         group,
         "branching",
-        commands.branching_nodes,
+        "commands:branching_nodes",
         "check the paper's equation (1), bp/b = (pi / mean p) / (m + 1), at every branching node "
         "of the planar tree",
         "  topomap branching instances/grid-4x4-snake.lp --bound 16",
@@ -486,7 +464,7 @@ def _add_table(group: Any) -> None:
     command = _command(
         group,
         "table",
-        commands.table,
+        "commands:table",
         "print the paper's Figure 4 beside ours, and write it as JSON",
         "  topomap table",
     )
@@ -519,7 +497,7 @@ def _add_family(group: Any) -> None:
     command = _command(
         group,
         "family",
-        commands.family,
+        "commands:family",
         "name the instances of a family file, and write the call of each where it changed",
         "  topomap family instances/batch.txt -d build/instances",
     )
@@ -552,7 +530,7 @@ def _add_draw(group: Any) -> None:
     command = _command(
         group,
         "draw",
-        pictures.draw,
+        "pictures:draw",
         "draw a map, as SVG, PNG or PDF",
         """\
   topomap draw instances/grid-4x4-snake.lp --map 2 -o map.svg
@@ -569,7 +547,7 @@ def _add_report(group: Any) -> None:
     command = _command(
         group,
         "report",
-        page.report,
+        "page:report",
         "tell all about explorations in one page to be opened in a browser: the log, how many "
         "hypotheses, what was refused, the best maps, and a replay step by step; what is not "
         "counted or drawn within --timeout (default: 60) says so",
@@ -595,7 +573,7 @@ def _add_figures(group: Any) -> None:
     command = _command(
         group,
         "figures",
-        pictures.figures,
+        "pictures:figures",
         "draw the paper's figures and some more, from computed answers",
         "  topomap figures -d docs/figures\n  topomap figures figure1 figure5 -d .",
     )
@@ -617,7 +595,7 @@ def _add_simulate(group: Any) -> None:
     command = _command(
         group,
         "simulate",
-        simulating.simulate,
+        "simulating:simulate",
         "let a robot explore an environment that it does not know, until it has one closed "
         "optimal map, and hold that against the truth",
         """\
@@ -662,7 +640,7 @@ def _add_show(group: Any) -> None:
     command = _command(
         group,
         "show",
-        pictures.show,
+        "pictures:show",
         "print a map in the lines of a terminal, then in words",
         """\
   topomap show instances/grid-4x4-snake.lp --perpendicular
@@ -675,7 +653,7 @@ def _add_export(group: Any) -> None:
     command = _command(
         group,
         "export",
-        pictures.export,
+        "pictures:export",
         "write a map for other tools: GraphML, JSON (node-link), DOT, or facts for clingraph",
         """\
   topomap export instances/grid-4x4-snake.lp --map 2 --format graphml -o map.graphml
@@ -683,7 +661,7 @@ def _add_export(group: Any) -> None:
   topomap export maps.json --format clingraph | clingraph --engine=neato --out=render""",
     )
     _add_scene(command)
-    command.add_argument("--format", required=True, choices=tuple(exports.FORMATS))
+    command.add_argument("--format", required=True, choices=EXPORTS)
     command.add_argument("-o", "--output", metavar="FILE", help="file to write (default: stdout)")
 
 
@@ -691,7 +669,7 @@ def _add_import(group: Any) -> None:
     command = _command(
         group,
         "import",
-        pictures.import_,
+        "pictures:import_",
         "read a map that export wrote, and write it as solve --json does",
         """\
   topomap export instances/grid-4x4-snake.lp --format graphml -o map.graphml
@@ -706,7 +684,7 @@ def _add_follow(group: Any) -> None:
     command = _command(
         group,
         "follow",
-        following.follow,
+        "following:follow",
         "follow an exploration as it happens: after each step the number of hypotheses, the best "
         "maps, what has become certain, and what to do next",
         """\
@@ -742,7 +720,7 @@ what is certain: new(T), the place where the agent is after step T was not visit
     add(
         "--count-limit",
         type=_number(int, 1),
-        default=online.MOST,
+        default=MOST_COUNTED,
         metavar="N",
         help="of more hypotheses say only that they are more (default: %(default)s)",
     )
@@ -760,7 +738,7 @@ def _add_explore(group: Any) -> None:
     command = _command(
         group,
         "explore",
-        exploring.explore,
+        "exploring:explore",
         "say where to go next: the shortest further walk that tells the maps apart, or leaves the "
         "fewest in the worst case; if there is none, to a pending gateway; or the proof that no "
         "walk ever tells them",
@@ -786,7 +764,7 @@ def _add_explore(group: Any) -> None:
     add(
         "--steps",
         type=_number(int, 1, 1000),
-        default=explore.STEPS,
+        default=LONGEST_WALK,
         metavar="N",
         help="walks of at most N steps (default: %(default)s)",
     )
@@ -797,3 +775,60 @@ def _add_explore(group: Any) -> None:
         "--facts", action="store_true", help="print the maps as facts for encodings/explore.lp"
     )
     _add_query(command, PRUNING)
+
+
+def _add_path(group: Any) -> None:
+    command = _command(
+        group,
+        "path",
+        "commands:path",
+        "print the folder of the encodings, for clingo, or that of the instances",
+        """\
+  topomap path
+  topomap clingo "$(topomap path)/topomap.lp" "$(topomap path instances)/grid-3x3-snake.lp" 0""",
+    )
+    command.add_argument(
+        "what",
+        nargs="?",
+        choices=("encodings", "instances"),
+        default="encodings",
+        help="which folder (default: %(default)s)",
+    )
+    command.add_argument("--json", action="store_true", help="write JSON: both folders")
+
+
+def _add_clingo(group: Any) -> None:
+    _command(
+        group,
+        "clingo",
+        "clingo_command:run",
+        "run clingo itself, with its options and exit statuses",
+        """\
+  topomap clingo --help
+  topomap clingo "$(topomap path)/topomap.lp" instances/grid-3x3-snake.lp 0 --quiet""",
+    )
+
+
+SUBCOMMANDS: dict[str, Callable[[Any], None]] = {
+    "generate": _add_generate,
+    "solve": _add_solve,
+    "ask": _add_ask,
+    "explain": _add_explain,
+    "explore": _add_explore,
+    "follow": _add_follow,
+    "simulate": _add_simulate,
+    "count": _add_count,
+    "search": _add_search,
+    "branching": _add_branching,
+    "check": _add_check,
+    "table": _add_table,
+    "family": _add_family,
+    "draw": _add_draw,
+    "show": _add_show,
+    "report": _add_report,
+    "figures": _add_figures,
+    "export": _add_export,
+    "import": _add_import,
+    "path": _add_path,
+    "clingo": _add_clingo,
+}

@@ -1,7 +1,8 @@
-"""The command ``clingo``, which the wheel from PyPI lacks: clingo's own main function,
-options and exit statuses (10 satisfiable, 20 unsatisfiable, 30 all found, 65 bad input)."""
+"""The subcommand ``clingo``, as the wheel of clingo from PyPI has no such command: clingo's own
+main function, options and exit statuses (10 satisfiable, 20 unsatisfiable, 30 all found, 65 bad
+input)."""
 
-import sys
+from collections.abc import Sequence
 
 from clingo.application import Application, clingo_main
 
@@ -10,5 +11,6 @@ class Clingo(Application):
     program_name = "clingo"
 
 
-def main() -> None:
-    sys.exit(clingo_main(Clingo(), sys.argv[1:]))
+def run(arguments: Sequence[str]) -> int:
+    """Run clingo with these arguments; returns its exit status."""
+    return clingo_main(Clingo(), arguments)

@@ -17,30 +17,30 @@ from topomap import beyond, branching, environment, figure4, maps, network, sear
 from topomap.check import STEP_RULES, by_definition
 from topomap.environment import Environment
 from topomap.errors import DONE, INTERRUPTED, NO, PARTIAL, InputError, say
-from topomap.experience import LARGEST, Experience, read
+from topomap.experience import Experience, read
 from topomap.family import expand
 from topomap.files import MOST_BYTES, output, text
+from topomap.folders import ENCODINGS, INSTANCES
 from topomap.generate import Instance, instance
 from topomap.journal import Journal
+from topomap.options import LARGEST, MOST_PLACES
+from topomap.query import Query
 from topomap.report import Report, steps_json
 from topomap.share import ALONE, Crew
-from topomap.solver import (
-    INTERRUPT,
-    MEMORY,
-    PARTS,
-    Cube,
-    Found,
-    Query,
-    Stopped,
-    Watch,
-    Way,
-    best,
-)
+from topomap.solver import INTERRUPT, MEMORY, Cube, Found, Stopped, Watch, Way, best
 from topomap.statistics import KEYS, Tally, tree
 from topomap.topology import TopologicalMap
+from topomap.vocabulary import PARTS, PROPERTIES
 
 BEST_FIRST = "closed, best-first"
 STOPS = Stopped, MemoryError  # what leaves a partial answer
+
+
+def path(args: argparse.Namespace) -> int:
+    """Print where the encodings or the instances are."""
+    found = {"encodings": str(ENCODINGS), "instances": str(INSTANCES)}
+    print(json.dumps({"format": 1, **found, "complete": True}) if args.json else found[args.what])
+    return DONE
 
 
 def generate(args: argparse.Namespace) -> int:
@@ -76,11 +76,9 @@ def environment_of(args: argparse.Namespace) -> Environment:
         world, warnings = network.load(args.file, args.slots, args.north)
         for warning in warnings:
             say(f"warning: {warning}")
-    elif args.rows * args.columns > environment.MOST_PLACES:
+    elif args.rows * args.columns > MOST_PLACES:
         size = f"{args.rows} x {args.columns}"
-        raise InputError(
-            f"topomap {args.command}: {size}: more than {environment.MOST_PLACES} places"
-        )
+        raise InputError(f"topomap {args.command}: {size}: more than {MOST_PLACES} places")
     elif args.kind == "maze":
         world = environment.maze(args.rows, args.columns, args.thin, args.seed or 0)
     elif args.kind in ("hexagons", "triangles"):
@@ -308,7 +306,7 @@ def check(args: argparse.Namespace) -> int:
     if not documents:
         raise InputError(f"{args.maps}: no maps of {args.instance} in it")
     truth = _truth(args.truth, experience, None) if args.truth else None
-    demands = [part for part in maps.DEMANDS if getattr(args, part)]
+    demands = [part for part in PROPERTIES if getattr(args, part)]
     demands += [f"bound({args.bound})"] if args.bound else []
     checked: list[maps.Verdict] = []
     fault = None

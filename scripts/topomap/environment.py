@@ -16,7 +16,6 @@ from topomap import nx
 from topomap.errors import InputError
 from topomap.topology import Gateway, Place, TopologicalMap, label
 
-MOST_PLACES = MOST_STEPS = 10**5
 NORTH, EAST, SOUTH, WEST = range(4)
 MOVES = {NORTH: (-1, 0), EAST: (0, 1), SOUTH: (1, 0), WEST: (0, -1)}
 

@@ -19,7 +19,6 @@ from topomap.topology import Gateway, Place, TopologicalMap
 
 DState = tuple[int, int]
 Misread = tuple[int, int | str]  # a step, and a gateway or a landmark that was missed or imagined
-LARGEST = 2**31 - 1  # what clingo's numbers hold
 MOST_SLOTS = 10**6  # sums of slots then stay below it
 DEEPEST = 100  # clingo's parser crashes on terms that are very deep
 ARITY = {"slots": 1, "view": 2, "turn": 2, "landmark": 2, "drop": 1, "pick": 1, "marker": 1}

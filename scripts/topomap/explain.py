@@ -19,8 +19,10 @@ import clingo
 
 from topomap import statements
 from topomap.commands import STOPS, exit_status
-from topomap.experience import LARGEST, DState, Experience, read
+from topomap.experience import DState, Experience, read
 from topomap.files import output
+from topomap.options import LARGEST
+from topomap.query import Query
 from topomap.reasons import (
     FIRST,
     KINDS,
@@ -33,24 +35,12 @@ from topomap.reasons import (
     told_views,
 )
 from topomap.report import map_line, steps_json
-from topomap.solver import (
-    INTERRUPT,
-    MEMORY,
-    OPTIMIZING,
-    PARTS,
-    Found,
-    Program,
-    Query,
-    Stopped,
-    Watch,
-    calls,
-    forget,
-)
+from topomap.solver import INTERRUPT, MEMORY, Found, Program, Stopped, Watch, calls, forget
 from topomap.statements import Statement
+from topomap.vocabulary import DEMANDS
 
 LATE = {"closed", "travelled"}  # what a map may lack after a step and have after a later one
 LASTING = ("same", "at")  # relations of which later steps tell nothing new
-DEMANDS = tuple(part for part in PARTS if part not in OPTIMIZING)
 ORDERS = 12  # in which reasons are tried, at most
 CONFLICTS, CALLS = 3_000, 500  # of the solver, until no further order is tried
 MOST_OTHERS, MANY = 4, 8  # that a map breaks besides, as told; reasons, of which a sum is told

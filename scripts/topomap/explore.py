@@ -15,19 +15,18 @@ import clingo
 
 from topomap import bisimulation, solver
 from topomap.bisimulation import Chart
-from topomap.errors import InputError
 from topomap.experience import DState, Experience
+from topomap.folders import ENCODINGS
+from topomap.options import LONGEST_WALK
 from topomap.solver import MEMORY, Stopped, Watch
 from topomap.topology import Gateway, Place, TopologicalMap
 
-STEPS = 30  # of the longest walk that is looked for, unless told
 MOST_CLASSES = 60  # that are told apart at once
 MOST_STATES = 150_000  # of all the maps together
 MOST_WORK = 400_000  # moves of the search for the length, and of that for pairs
 CONFLICTS = 3000  # after which clingo is asked no longer; a tenth, if the answer is known
 MORE = 4  # steps by which clingo is given more, where that search does not end
 TOGETHER = 100  # proofs found at once
-ENCODINGS = solver.ENCODINGS
 _NUMBER = re.compile(r"\d+|nowhere")
 
 
@@ -437,8 +436,6 @@ class _Call(solver.Program):
 
     def __init__(self, file: str, facts: str, options: Sequence[str]):
         path = ENCODINGS / f"{file}.lp"
-        if not path.is_file():
-            raise InputError(f"{path}: not found; install with pip install -e, as make does")
         self.control = self._solved = clingo.Control(list(options))
         self.control.load(str(path))
         self.control.add("base", [], facts)
@@ -517,7 +514,7 @@ def plan(
     watch: Watch,
     *,
     marker: bool = False,
-    steps: int = STEPS,
+    steps: int = LONGEST_WALK,
     proofs: bool = True,
 ) -> Plan:
     """The next walk, of ``steps`` steps at most, for an agent to whom each of these maps is

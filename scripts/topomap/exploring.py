@@ -11,11 +11,14 @@ from topomap import bisimulation, check, files, maps, scenes, solver, words
 from topomap.bisimulation import Chart, Pair
 from topomap.commands import exit_status
 from topomap.errors import NO, InputError, printable, say
-from topomap.experience import LARGEST, DState, Experience, read
+from topomap.experience import DState, Experience, read
 from topomap.explore import Plan, Prediction, Untold, plan, standing
+from topomap.options import LARGEST
+from topomap.query import Query
 from topomap.report import steps_json
-from topomap.solver import MEMORY, PARTS, Query, Stopped, Watch
+from topomap.solver import MEMORY, Stopped, Watch
 from topomap.topology import gid
+from topomap.vocabulary import PARTS
 
 At = tuple[DState, ...]
 KINDS = {

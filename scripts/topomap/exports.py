@@ -15,6 +15,7 @@ from topomap import maps, nx
 from topomap.errors import InputError, printable
 from topomap.files import data
 from topomap.network import read_graphml
+from topomap.options import EXPORTS
 from topomap.report import map_json, steps_json
 from topomap.scenes import Scene, of_document
 from topomap.topology import Gateway, Place, gid
@@ -239,9 +240,6 @@ def _term(node: Place | Gateway) -> str:
     return f"({node[0]},{node[1]})" if isinstance(node, tuple) else str(node)
 
 
-FORMATS: dict[str, Callable[[Scene], str]] = {
-    "graphml": graphml,
-    "json": node_link,
-    "dot": dot,
-    "clingraph": clingraph,
-}
+FORMATS: dict[str, Callable[[Scene], str]] = dict(
+    zip(EXPORTS, (graphml, node_link, dot, clingraph), strict=True)
+)

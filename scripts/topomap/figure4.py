@@ -8,11 +8,12 @@ from pathlib import Path
 from typing import Any
 
 from topomap.experience import read
+from topomap.folders import INSTANCES
 from topomap.journal import Journal
-from topomap.solver import Query, Watch
+from topomap.query import Query
+from topomap.solver import Watch
 from topomap.statistics import KEYS, tree
 
-INSTANCES = Path(__file__).resolve().parents[2] / "instances"
 COLUMNS: list[dict[str, Any]] = json.loads(
     Path(__file__).with_name("figure4.json").read_text(encoding="utf-8")
 )["columns"]

@@ -17,8 +17,9 @@ from topomap.bent import Points
 from topomap.environment import grid
 from topomap.experience import Experience, read
 from topomap.generate import instance
+from topomap.query import Query
 from topomap.scenes import Scene
-from topomap.solver import Query, Stopped, Watch
+from topomap.solver import Stopped, Watch
 
 WALKS = ("#c2332d", "#2f7fc1", "#2e7d4f", "#e07b00", "#7a4fa3")
 BLUE, ORANGE = "#2f7fc1", "#e07b00"

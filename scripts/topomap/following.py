@@ -23,7 +23,6 @@ from topomap import words
 from topomap.errors import DONE, NO, PARTIAL, InputError, of_file, say
 from topomap.experience import (
     ARITY,
-    LARGEST,
     MARKER,
     MOST_SLOTS,
     cut_short,
@@ -33,6 +32,7 @@ from topomap.experience import (
 )
 from topomap.explore import plan, standing
 from topomap.online import Certain, Follower, Status
+from topomap.options import LARGEST
 from topomap.report import map_line, steps_json
 from topomap.solver import INTERRUPT, Found, Stopped, Watch
 

@@ -15,17 +15,18 @@ from clingo import parse_term
 from topomap import words
 from topomap.check import STEP_RULES, At, Grown, Violation, by_definition, by_rules
 from topomap.errors import InputError
-from topomap.experience import LARGEST, Experience, Misread
+from topomap.experience import Experience, Misread
 from topomap.files import text
-from topomap.solver import PARTS, misreadings
+from topomap.options import LARGEST
+from topomap.solver import misreadings
 from topomap.topology import Gateway, TopologicalMap
+from topomap.vocabulary import PARTS, PROPERTIES
 
 MOST_BYTES = 2**32
 LONGER = 10  # times as many dstates as steps: no map of the experience
 _AT = re.compile(r"at\((-?\d+),(-?\d+),(-?\d+)\)", re.ASCII)
 KINDS = ("consistent", "best", "optimal", "best so far", "closed, best-first")
 BEST = ("optimal", "best so far")  # what --optimal gives
-DEMANDS = ("planar", "closed", "travelled", "boundary", "perpendicular")
 
 
 @dataclass(frozen=True)
@@ -41,7 +42,7 @@ class Document:
         for part in self.claims.get("parts", ()):
             if part == "euler":
                 yield "planar"
-            elif part in DEMANDS:
+            elif part in PROPERTIES:
                 yield part
         if self.claims.get("bound") is not None:
             yield f"bound({self.claims['bound']})"

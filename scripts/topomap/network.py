@@ -19,8 +19,9 @@ from defusedxml.ElementTree import fromstring
 from topomap import nx
 from topomap.environment import Environment, by_bearing, flat_bearing, plain
 from topomap.errors import InputError
-from topomap.experience import LARGEST, MOST_SLOTS
+from topomap.experience import MOST_SLOTS
 from topomap.files import data
+from topomap.options import LARGEST
 from topomap.topology import Place
 
 Point = tuple[float, float]

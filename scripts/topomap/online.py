@@ -14,12 +14,14 @@ from typing import Any
 import clingo
 
 from topomap.experience import MARKER, DState, Experience
+from topomap.folders import ENCODINGS
 from topomap.hypothesis import Hypothesis
+from topomap.options import MOST_COUNTED
+from topomap.query import Query
 from topomap.search import OFTEN, root
-from topomap.solver import ENCODINGS, MEMORY, Query, Stopped, Watch
+from topomap.solver import MEMORY, Stopped, Watch
 from topomap.topology import Gateway
 
-MOST = 40_000  # hypotheses that are counted
 TRIED = 10  # times as many nodes are visited to tell that there are more
 MAPS = 100  # best maps that are kept
 
@@ -69,7 +71,7 @@ class Follower:
         landmarks: frozenset[str] = frozenset(),
         planar: bool = False,
         bound: int | None = None,
-        most: int = MOST,
+        most: int = MOST_COUNTED,
         marks: frozenset[str] = frozenset(),
     ):
         self.experience = Experience(slots, (view,), (), (landmarks,), *_marked(marks, 0))

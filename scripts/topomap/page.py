@@ -18,14 +18,17 @@ from topomap import __version__, experience, scenes, solver, svg, words
 from topomap.agreement import Agreement
 from topomap.commands import exit_status
 from topomap.errors import InputError, printable, say
-from topomap.experience import LARGEST, Experience
+from topomap.experience import Experience
 from topomap.files import output
+from topomap.options import LARGEST
 from topomap.pictures import ready
+from topomap.query import Query
 from topomap.replay import MOST, SHOWN, Step, fate, in_force, replay
 from topomap.scenes import MOST_PLACES, Scene
-from topomap.solver import INTERRUPT, MEMORY, PARTS, PRUNING, Cube, Query, Stopped, Watch
+from topomap.solver import INTERRUPT, MEMORY, Cube, Stopped, Watch
 from topomap.svg import Drawing, part_of
 from topomap.topology import gid
+from topomap.vocabulary import PARTS, PRUNING
 
 FOLDER = Path(__file__).parent
 SMALL = 100  # places in a small picture, at most

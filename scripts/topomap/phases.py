@@ -33,7 +33,7 @@ from topomap.experience import Experience
 from topomap.plane import Planarity
 
 if TYPE_CHECKING:
-    from topomap.solver import Query
+    from topomap.query import Query
 
 SQUARE = {"closed", "perpendicular"}
 LEAST = 80  # steps: shorter explorations are as soon done in one call

@@ -11,8 +11,10 @@ from topomap import exports, scenes, words
 from topomap.commands import exit_status
 from topomap.errors import DONE, INTERRUPTED, InputError, say
 from topomap.files import output
+from topomap.query import Query
 from topomap.scenes import Scene
-from topomap.solver import PARTS, Query, Stopped, Watch
+from topomap.solver import Stopped, Watch
+from topomap.vocabulary import PARTS
 
 FORMATS = ("svg", "png", "pdf")
 LEAST, MOST = 20, 100  # columns of a terminal

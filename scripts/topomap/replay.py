@@ -9,7 +9,8 @@ from dataclasses import dataclass, field
 from topomap import search
 from topomap.experience import Experience
 from topomap.hypothesis import RULES, Hypothesis
-from topomap.solver import MEMORY, Cube, Query, Stopped, Watch
+from topomap.query import Query
+from topomap.solver import MEMORY, Cube, Stopped, Watch
 from topomap.topology import Gateway
 
 MOST = 20_000  # hypotheses of a step that are all looked at

@@ -6,7 +6,8 @@ from typing import IO, Any
 
 from topomap import words
 from topomap.experience import Experience, Misread
-from topomap.solver import Found, Query
+from topomap.query import Query
+from topomap.solver import Found
 from topomap.topology import Gateway, TopologicalMap
 
 

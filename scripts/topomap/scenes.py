@@ -9,9 +9,11 @@ from typing import Any
 
 from topomap import maps, nx, solver
 from topomap.errors import InputError, printable
-from topomap.experience import LARGEST, MOST_SLOTS, Experience, parse
+from topomap.experience import MOST_SLOTS, Experience, parse
 from topomap.files import text
-from topomap.solver import MEMORY, Found, Query, Stopped, Watch
+from topomap.options import LARGEST
+from topomap.query import Query
+from topomap.solver import MEMORY, Found, Stopped, Watch
 from topomap.topology import Gateway, TopologicalMap
 from topomap.words import markers, short
 

@@ -12,7 +12,9 @@ from operator import itemgetter
 
 from topomap.experience import Experience
 from topomap.hypothesis import Hypothesis
-from topomap.solver import PRUNING, Cube, Found, Query, Watch
+from topomap.query import Query
+from topomap.solver import Cube, Found, Watch
+from topomap.vocabulary import PRUNING
 
 OFTEN = 500  # nodes between two looks at the clock
 

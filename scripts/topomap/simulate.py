@@ -16,7 +16,8 @@ from topomap.errors import InputError
 from topomap.experience import Experience
 from topomap.experience import explore as experienced
 from topomap.explore import Prediction
-from topomap.solver import MEMORY, Found, Query, Stopped, Watch
+from topomap.query import Query
+from topomap.solver import MEMORY, Found, Stopped, Watch
 from topomap.topology import Gateway, Place, TopologicalMap
 
 MOST_MAPS = 100  # best maps of which a walk is planned, while none is closed

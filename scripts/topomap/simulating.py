@@ -7,14 +7,17 @@ from collections.abc import Iterator
 from typing import Any
 
 from topomap.commands import environment_of, exit_status
-from topomap.environment import MOST_STEPS, Environment
+from topomap.environment import Environment
 from topomap.errors import InputError
 from topomap.family import expand
 from topomap.files import output
+from topomap.options import MOST_STEPS
+from topomap.query import Query
 from topomap.simulate import Outcome, reached
 from topomap.simulate import simulate as explored
-from topomap.solver import PARTS, Query, Watch
+from topomap.solver import Watch
 from topomap.topology import Gateway, TopologicalMap, label
+from topomap.vocabulary import PARTS
 from topomap.words import number
 
 STEPS = 20  # for each way

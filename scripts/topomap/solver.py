@@ -10,7 +10,6 @@ import hashlib
 import os
 import queue
 import signal
-import sys
 import threading
 import time
 import weakref
@@ -18,29 +17,17 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cache, partial
 from operator import itemgetter
-from pathlib import Path
 from typing import Any, ClassVar, TypeVar
 
 import clingo
-from tqdm import tqdm
 
 from topomap import __version__, phases
-from topomap.errors import InputError
 from topomap.experience import DState, Experience, Misread
+from topomap.folders import ENCODINGS
+from topomap.progress import Progress
+from topomap.query import Query
+from topomap.vocabulary import PRUNING
 
-ENCODINGS = Path(__file__).resolve().parents[2] / "encodings"
-PARTS = {
-    "planar": "links join gateways of one face",
-    "euler": "the same by |V| - |E| + faces = 2",
-    "closed": "no gateway is pending",
-    "travelled": "every path holds two places or more",
-    "boundary": "no place is both left and right of a path",
-    "perpendicular": "paths meet once, no three make a triangle",
-    "genus": "least genus",
-    "minimal": "fewest paths, then fewest places",
-}
-OPTIMIZING = {"genus", "minimal"}
-PRUNING = ("planar", "perpendicular")  # what has them has had them after each step
 FORMS = {"fast": ENCODINGS / "fast", "plain": ENCODINGS}
 
 Answer = TypeVar("Answer")
@@ -48,63 +35,33 @@ Cube = tuple[DState, ...]  # the first dstates of a hypothesis
 INTERRUPT = "interrupted"
 MEMORY = "out of memory"
 SIGNALS = (signal.SIGINT, signal.SIGTERM)
-tqdm.monitor_interval = 0  # a thread that may never begin
-tqdm.set_lock(threading.RLock())  # the one of its own is for processes, which may leave it behind
 
 
 class Stopped(Exception):
     """The search ended before all was found; the message says why."""
 
 
-@dataclass(frozen=True)
-class Query:
-    """Which hypotheses are asked for: the parts of the theory that are to hold, the
-    most places, and the last step that counts; the encoding that is to give them; and how many
-    views may be wrong, which goes with the plain encoding."""
-
-    parts: frozenset[str] = frozenset()
-    places: int | None = None
-    horizon: int | None = None
-    encoding: str = "fast"
-    noise: int | None = None
-
-    @property
-    def optimizes(self) -> bool:
-        return bool(self.parts & OPTIMIZING) or self.noise is not None
-
-    @property
-    def kind(self) -> str:
-        """What the answers are."""
-        return "best" if self.parts & OPTIMIZING else "consistent"
-
-    def having(self, *parts: str) -> "Query":
-        """The query with more parts."""
-        return replace(self, parts=self.parts | set(parts))
-
-    def control(
-        self, facts: str, entry: Sequence[str] = ("topomap",), options: Sequence[str] = ()
-    ) -> clingo.Control:
-        """clingo with the encodings, the entry files first, and the facts, not yet grounded."""
-        arguments = ["0", *options]
-        if self.optimizes:
-            arguments.append("--opt-mode=optN")
-        files = [*entry, *sorted(self.parts)]
-        if self.places is not None:
-            files.append("bound")
-            arguments += ["-c", f"places={self.places}"]
-        if self.noise is not None:
-            files.append("noise")
-            arguments += ["-c", f"noise={self.noise}"]
-        if self.horizon is not None:
-            arguments += ["-c", f"horizon={self.horizon}"]
-        control = clingo.Control(arguments)
-        for file in files:
-            path = FORMS[self.encoding] / f"{file}.lp"
-            if not path.is_file():
-                raise InputError(f"{path}: not found; install with pip install -e, as make does")
-            control.load(str(path))
-        control.add("base", [], facts)
-        return control
+def control(
+    query: Query, facts: str, entry: Sequence[str] = ("topomap",), options: Sequence[str] = ()
+) -> clingo.Control:
+    """clingo with the encodings, the entry files first, and the facts, not yet grounded."""
+    arguments = ["0", *options]
+    if query.optimizes:
+        arguments.append("--opt-mode=optN")
+    files = [*entry, *sorted(query.parts)]
+    if query.places is not None:
+        files.append("bound")
+        arguments += ["-c", f"places={query.places}"]
+    if query.noise is not None:
+        files.append("noise")
+        arguments += ["-c", f"noise={query.noise}"]
+    if query.horizon is not None:
+        arguments += ["-c", f"horizon={query.horizon}"]
+    made = clingo.Control(arguments)
+    for file in files:
+        made.load(str(FORMS[query.encoding] / f"{file}.lp"))
+    made.add("base", [], facts)
+    return made
 
 
 class Watch:
@@ -116,22 +73,9 @@ class Watch:
     def __init__(self, timeout: float | None = None, quiet: bool = False):
         self.found = 0
         self.signal = False
-        self._title = ""
         self.deadline = None if timeout is None else time.monotonic() + timeout
-        interval = 0.2 if sys.stderr.isatty() else 10
-        self.bar = tqdm(
-            unit=" maps", delay=2, mininterval=interval, miniters=0, leave=False, disable=quiet
-        )
-
-    def title(self, text: str) -> None:
-        """Say what is being done."""
-        self.bar.set_description_str(text, refresh=False)
-        self._title = text
-
-    def phase(self, text: str) -> None:
-        """Say what is being done for it, or that it is done."""
-        words = filter(None, [self._title, text])
-        self.bar.set_description_str(": ".join(words), refresh=False)
+        self.progress = Progress(quiet)
+        self.title, self.phase = self.progress.title, self.progress.phase
 
     def rest(self) -> None:
         """Let the time limit wait."""
@@ -144,8 +88,7 @@ class Watch:
 
     def tick(self) -> None:
         """Show progress; raises Stopped past the time limit and after a signal."""
-        with contextlib.suppress(OSError):  # stderr cannot be written
-            self.bar.update(self.found - self.bar.n)
+        self.progress.show(self.found)
         if self.signal:
             raise Stopped(INTERRUPT)
         if self.deadline is not None and time.monotonic() > self.deadline:
@@ -162,8 +105,7 @@ class Watch:
     def __exit__(self, *_: object) -> None:
         for number, handler in self.handlers:
             signal.signal(number, handler)
-        with contextlib.suppress(OSError):
-            self.bar.close()
+        self.progress.close()
 
 
 class Program:
@@ -174,7 +116,7 @@ class Program:
         self.facts = facts
         self._phased = query.encoding == "fast" and phases.serve(experience, query)
         how = phases.program(experience, query) if self._phased else ()
-        self.control = query.control(experience.facts() + facts, *how)
+        self.control = control(query, experience.facts() + facts, *how)
         self._grounded = self._interrupted = False
         self._solved = self.control  # now or next
         self.say: Callable[[str], None] = lambda _: None

@@ -4,41 +4,15 @@
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from topomap.errors import InputError
-from topomap.experience import LARGEST, Experience
+from topomap.options import LARGEST
+from topomap.vocabulary import FIGURES, PROPERTIES, RELATIONS
 from topomap.words import number, short
 
-# What each argument is: a step, or a slot counted clockwise of where the agent stood after
-# the step before it.
-RELATIONS = {
-    "same": ("step", "step"),
-    "linked": ("step", "slot", "step", "slot"),
-    "path": ("step", "slot", "step", "slot"),
-    "pending": ("step", "slot"),
-    "at": ("step", "place", "slot"),
-}
-FIGURES = {  # as query.lp has them
-    "places": "place",
-    "paths": "path",
-    "links": "link",
-    "pending": "pending",
-    "genus": "genus",
-}
-PROPERTIES = ("planar", "closed", "travelled", "boundary", "perpendicular")
-VOCABULARY = """\
-statements, T and U being steps, S and R slots clockwise of the gateway stood at then:
-  same(T,U)         the agent was at one place after T and after U
-  linked(T,S,U,R)   gateway S of where it was after T is joined to gateway R of
-                    where it was after U
-  path(T,S,U,R)     one path leads through these two gateways
-  pending(T,S)      that gateway has no link
-  at(T,P,S)         after T it is at gateway S of place P, as in the maps of solve
-  places < 12       a number of places, paths, links, pending gateways (pending), or
-                    the genus; compared by < <= = != >= >
-  planar, closed, travelled, boundary, perpendicular
-                    what the parts of these names demand
-  not STATEMENT     it does not hold"""
+if TYPE_CHECKING:  # who only reads a call need not load the solver
+    from topomap.experience import Experience
 
 _NOT = re.compile(r"not\s+(?=\S)")
 _RELATION = re.compile(r"([a-z]\w*)\s*\(([^()]*)\)", re.ASCII)
@@ -65,7 +39,7 @@ class Statement:
         return f"ask({self.term})."
 
 
-def parse(text: str, experience: Experience, command: str) -> Statement:
+def parse(text: str, experience: "Experience", command: str) -> Statement:
     """The statement in a text, about an experience of which all steps count. Raises
     InputError, one line that begins with the command."""
     try:
@@ -74,7 +48,7 @@ def parse(text: str, experience: Experience, command: str) -> Statement:
         raise InputError(f'{command}: "{_short(text)}": {fault}') from None
 
 
-def _parsed(text: str, experience: Experience) -> Statement:
+def _parsed(text: str, experience: "Experience") -> Statement:
     rest, positive = text.strip(), True
     while match := _NOT.match(rest):
         rest, positive = rest[match.end() :], not positive
@@ -107,7 +81,7 @@ def _unknown(word: str) -> str:
     )
 
 
-def _relation(name: str, arguments: list[str], experience: Experience) -> tuple[str, str | None]:
+def _relation(name: str, arguments: list[str], experience: "Experience") -> tuple[str, str | None]:
     """The term of such a statement, and why it cannot hold, if that is plain."""
     kinds = RELATIONS.get(name)
     if kinds is None:
@@ -125,7 +99,7 @@ def _relation(name: str, arguments: list[str], experience: Experience) -> tuple[
     return term, next(_plain(name, numbers, experience), None)
 
 
-def _plain(name: str, numbers: list[int], experience: Experience) -> Iterator[str]:
+def _plain(name: str, numbers: list[int], experience: "Experience") -> Iterator[str]:
     """What is plainly wrong: a gateway that was not seen, or a place that was not yet."""
     if name == "at":
         step, place, slot = numbers

@@ -10,8 +10,10 @@ from topomap import search
 from topomap.experience import Experience
 from topomap.hypothesis import Hypothesis
 from topomap.journal import Journal
+from topomap.query import Query
 from topomap.share import ALONE, Crew
-from topomap.solver import PRUNING, Cube, Query, Watch, count, demand_cover
+from topomap.solver import Cube, Watch, count, demand_cover
+from topomap.vocabulary import PRUNING
 
 LARGE = 10_000  # a tree with a level of more hypotheses is counted cube by cube
 KEYS = ("nodes", "maps", "final", "closed", "closed_text", "optimal", "perpendicular")

@@ -2,10 +2,13 @@
 
 import re
 from collections.abc import Collection, Mapping, Sequence
+from typing import TYPE_CHECKING
 
 from topomap.errors import printable
-from topomap.experience import Experience, Misread
 from topomap.topology import Gateway, gid
+
+if TYPE_CHECKING:  # who only reads a call need not load the solver
+    from topomap.experience import Experience, Misread
 
 MOST = 24  # gateways of a view that are told one by one
 LONGEST = 16  # letters of the landmarks of a place, in a picture
@@ -40,7 +43,7 @@ def _clockwise(slot: int) -> str:
     return f"{number(slot, 'slot')} clockwise"
 
 
-def turn(experience: Experience, step: int) -> str:
+def turn(experience: "Experience", step: int) -> str:
     """What is done at a step."""
     if step == 0:
         return "start"
@@ -50,7 +53,7 @@ def turn(experience: Experience, step: int) -> str:
     return direction(slot, experience.slots)
 
 
-def view(experience: Experience, step: int) -> str:
+def view(experience: "Experience", step: int) -> str:
     """The gateways that are seen after a step."""
     seen = sorted(experience.views[step])
     told = seen[:MOST]
@@ -63,7 +66,7 @@ def view(experience: Experience, step: int) -> str:
     return f"{number(len(seen), 'way')}: {', '.join(words)}"
 
 
-def marker(experience: Experience, step: int) -> str:
+def marker(experience: "Experience", step: int) -> str:
     """What is seen of the marker after a step, and what is done with it."""
     told = [
         word
@@ -77,7 +80,7 @@ def marker(experience: Experience, step: int) -> str:
     return ", ".join(told)
 
 
-def markers(experience: Experience, at: Sequence[Gateway]) -> str:
+def markers(experience: "Experience", at: Sequence[Gateway]) -> str:
     """The same of a map's steps, with the places."""
     told = ((step, marker(experience, step), place) for step, (place, _) in enumerate(at))
     return "; ".join(
@@ -85,7 +88,7 @@ def markers(experience: Experience, at: Sequence[Gateway]) -> str:
     )
 
 
-def disbelieved(experience: Experience, misread: Sequence[Misread]) -> str:
+def disbelieved(experience: "Experience", misread: "Sequence[Misread]") -> str:
     """What was misread, step by step; the experience is the corrected one."""
     told: dict[int, list[str]] = {}
     for step, what in misread:

@@ -25,7 +25,8 @@ from topomap.experience import DState, read
 from topomap.explore import Standing
 from topomap.files import output
 from topomap.generate import Instance, instance
-from topomap.solver import Query, Watch
+from topomap.query import Query
+from topomap.solver import Watch
 
 ROOT = Path(__file__).resolve().parents[2]
 TIMES = 3

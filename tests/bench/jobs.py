@@ -7,7 +7,8 @@ from topomap import share, solver
 from topomap.environment import grid
 from topomap.generate import instance
 from topomap.journal import Journal
-from topomap.solver import Query, Watch
+from topomap.query import Query
+from topomap.solver import Watch
 from topomap.statistics import tree
 
 TASKS = {

@@ -17,7 +17,8 @@ from topomap import online, solver
 from topomap.experience import Experience, read
 from topomap.files import output
 from topomap.online import Follower
-from topomap.solver import Query, Stopped, Watch
+from topomap.query import Query
+from topomap.solver import Stopped, Watch
 
 ROOT = Path(__file__).resolve().parents[2]
 RUNS = [
@@ -32,7 +33,8 @@ RUNS = [
 HEAD = f"""# A step of `topomap follow`
 
 Written by `python -m bench.online` in `tests/`. A step *online* is `Follower.step` and
-`Follower.status`: what is new is ground, then the number of hypotheses (up to {online.MOST:,}; of
+`Follower.status`: what is new is ground, then the number of hypotheses (up to
+{online.MOST_COUNTED:,}; of
 more it says so), the best maps, and what is certain. *From scratch* the experience up to that
 step is ground and counted, then ground again for the best maps, as `topomap count` and `solve
 --optimal` do; what is certain is not asked for. *Rules* are ground rules: those that the step

@@ -23,7 +23,8 @@ from topomap.check import by_definition
 from topomap.experience import DState, Experience, read
 from topomap.hypothesis import Hypothesis
 from topomap.journal import Journal
-from topomap.solver import Query, Watch
+from topomap.query import Query
+from topomap.solver import Watch
 from topomap.statistics import Tally, tree
 
 At = tuple[DState, ...]

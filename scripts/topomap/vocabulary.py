@@ -1,0 +1,48 @@
+"""What can be asked of maps: the parts of the theory, and what statements are made of. It loads
+nothing, so that help and a mistyped call need not wait until the solver is loaded."""
+
+PARTS = {
+    "planar": "links join gateways of one face",
+    "euler": "the same by |V| - |E| + faces = 2",
+    "closed": "no gateway is pending",
+    "travelled": "every path holds two places or more",
+    "boundary": "no place is both left and right of a path",
+    "perpendicular": "paths meet once, no three make a triangle",
+    "genus": "least genus",
+    "minimal": "fewest paths, then fewest places",
+}
+OPTIMIZING = {"genus", "minimal"}
+PRUNING = ("planar", "perpendicular")  # what has them has had them after each step
+DEMANDS = tuple(part for part in PARTS if part not in OPTIMIZING)
+PROPERTIES = tuple(part for part in DEMANDS if part != "euler")  # which is another rule for planar
+FORMS = ("fast", "plain")  # of the encoding
+
+# What each argument is: a step, or a slot counted clockwise of where the agent stood after
+# the step before it.
+RELATIONS = {
+    "same": ("step", "step"),
+    "linked": ("step", "slot", "step", "slot"),
+    "path": ("step", "slot", "step", "slot"),
+    "pending": ("step", "slot"),
+    "at": ("step", "place", "slot"),
+}
+FIGURES = {  # as query.lp has them
+    "places": "place",
+    "paths": "path",
+    "links": "link",
+    "pending": "pending",
+    "genus": "genus",
+}
+VOCABULARY = """\
+statements, T and U being steps, S and R slots clockwise of the gateway stood at then:
+  same(T,U)         the agent was at one place after T and after U
+  linked(T,S,U,R)   gateway S of where it was after T is joined to gateway R of
+                    where it was after U
+  path(T,S,U,R)     one path leads through these two gateways
+  pending(T,S)      that gateway has no link
+  at(T,P,S)         after T it is at gateway S of place P, as in the maps of solve
+  places < 12       a number of places, paths, links, pending gateways (pending), or
+                    the genus; compared by < <= = != >= >
+  planar, closed, travelled, boundary, perpendicular
+                    what the parts of these names demand
+  not STATEMENT     it does not hold"""
