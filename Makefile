@@ -17,57 +17,83 @@ JOBS    ?= $(shell nproc)
 MAPS    ?= ../shared/maps
 BIN     := .venv/bin
 SETUP   := .venv/set-up
+TOOLS   := .venv/tools
 BATCH   := build/instances
 MAKERS  := $(addprefix scripts/topomap/,environment.py experience.py generate.py network.py \
              route.py topology.py)
+INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check --editable
 
 .PHONY: all table instances batch test test-long mutate lint figures bench beyond simulate clean \
-        committed
+        committed anew
 .DELETE_ON_ERROR:
 
-all: instances table
+# One after the other, also under make -j, so that the table is printed last.
+all: $(SETUP)
+	@$(MAKE) --no-print-directory instances
+	@$(MAKE) --no-print-directory table
+
+# The environment knows the folder that it is in, and the Python that it was made of. It is made
+# anew if either is another one (PYTHON counts if it was given), or if its Python is gone.
+WHO     := import sys; print(sys.base_prefix, sys.version.split()[0])
+GIVEN   := $(if $(filter file,$(origin PYTHON)),,yes)
+CURRENT := $(shell { .venv/bin/python -c "" && test -e $(SETUP) && \
+             test "$$(cd -P .venv && pwd)" = "$$(sed -n 1p $(SETUP))" && \
+             { test -z "$(GIVEN)" || \
+               test "$$($(PYTHON) -c '$(WHO)')" = "$$(sed -n 2p $(SETUP))"; } } 2>/dev/null && echo yes)
+ifneq ($(CURRENT),yes)
+$(SETUP): anew
+endif
 
 $(SETUP): pyproject.toml
 	$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "Python 3.11 or newer is needed: make PYTHON=...")'
+	$(if $(CURRENT),,rm -rf .venv)
 	$(PYTHON) -m venv .venv
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[dev]'
+	$(INSTALL) '.[draw]'
+	printf '#!/bin/sh\nexec "$$(dirname "$$0")/topomap" clingo "$$@"\n' >$(BIN)/clingo
+	chmod +x $(BIN)/clingo
+	(cd -P .venv && pwd && bin/python -c '$(WHO)') >$@
+
+# What the tests and make lint need besides.
+$(TOOLS): $(SETUP)
+	$(INSTALL) '.[dev]'
 	touch $@
 
 table: $(SETUP)
 	$(BIN)/topomap table
 
-# Each line of the family file becomes calls NAME.args, written only where they change.
+# Each line of the family file becomes calls NAME.args, written only where a call, or the file
+# that it reads, was changed.
 instances: $(SETUP)
 	$(BIN)/topomap family instances/batch.txt --directory $(BATCH) >/dev/null
 	@$(MAKE) --no-print-directory batch
 
 batch: $(patsubst %.args,%.lp,$(wildcard $(BATCH)/*.args))
 
-.SECONDEXPANSION:
-$(BATCH)/%.lp: $(BATCH)/%.args $(MAKERS) $$(filter %.graphml,$$(shell cat $(BATCH)/$$*.args))
-	$(BIN)/topomap generate $(shell cat $<) --output $@
+# The shell reads the call: in names of files it may quote blanks, dollars and the like.
+$(BATCH)/%.lp: $(BATCH)/%.args $(MAKERS)
+	eval "$(BIN)/topomap generate $$(sed 1q '$<') --output '$@'"
 
-test: $(SETUP)
+test: $(TOOLS)
 	$(BIN)/pytest -n $(JOBS) -m 'not long'
 
-test-long: $(SETUP)
+test-long: $(TOOLS)
 	$(BIN)/pytest -n $(JOBS) --tried results/tried.json
 
-mutate: $(SETUP)
+mutate: $(TOOLS)
 	$(BIN)/python tests/mutate.py --jobs $(JOBS) --known build/mutants.txt
 
-lint: $(SETUP)
+lint: $(TOOLS)
 	$(BIN)/ruff check scripts tests
 	$(BIN)/ruff format --check scripts tests
 	$(BIN)/mypy
 
 GENERATE  := $(BIN)/topomap generate
-MANHATTAN := network $(MAPS)/manhattan.graphml --slots 4 --north 29 --route tour
+MANHATTAN := network "$(MAPS)/manhattan.graphml" --slots 4 --north 29 --route tour
 
-bench: $(SETUP)
-	cd tests && ../$(BIN)/python -m bench --networks $(abspath $(MAPS)) $(BENCH)
-	cd tests && ../$(BIN)/python -m bench.online
-	cd tests && ../$(BIN)/python -m bench.asking
+bench: $(TOOLS)
+	PYTHONPATH=tests $(BIN)/python -m bench --networks "$(MAPS)" $(BENCH)
+	PYTHONPATH=tests $(BIN)/python -m bench.online
+	PYTHONPATH=tests $(BIN)/python -m bench.asking
 
 figures: $(SETUP)
 	$(BIN)/topomap figures --directory docs/figures

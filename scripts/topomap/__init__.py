@@ -56,4 +56,4 @@ searches without it, reads answers, checks and compares them.
 ==================  =====================================================
 """
 
-__version__ = "0.1.0"
+__version__ = "0.2.0"

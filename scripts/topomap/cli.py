@@ -332,8 +332,8 @@ def _add_crew(command: Parser, but: str = "") -> None:
         "--dask",
         metavar="ADDRESS",
         help="share it out among the workers of a running Dask cluster, such as "
-        "tcp://127.0.0.1:8786; they need this version of topomap (and here the extra: "
-        "pip install 'topomap[dask]')",
+        "tcp://127.0.0.1:8786; they need this version of topomap (and here the extra dask: "
+        "pip install '.[dask]' in its folder)",
     )
 
 
@@ -585,9 +585,8 @@ def _add_figures(group: Any) -> None:
     )
     command.add_argument(
         "--instances",
-        default="instances",
         metavar="DIR",
-        help="where they are (default: instances)",
+        help="where they are (default: those of topomap path instances)",
     )
 
 

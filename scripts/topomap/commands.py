@@ -508,7 +508,7 @@ def family(args: argparse.Namespace) -> int:
     """Write the call of each instance of a family where it changed, and drop what is no
     longer listed of what the last call made."""
     folder = Path(args.directory)
-    calls: dict[str, list[str]] = {}
+    calls: dict[str, str] = {}
     for line, call in expand(args.file):
         try:
             with contextlib.redirect_stdout(None):
@@ -524,7 +524,10 @@ def family(args: argparse.Namespace) -> int:
             raise InputError(
                 f"{args.file}:{line}: a second instance named {made.name}; --name can part them"
             )
-        calls[made.name] = call
+        calls[made.name] = shlex.join(call) + "\n"
+        if parsed.kind == "network":  # make sees by this line that the map was changed
+            is_now = Path(parsed.file).stat()
+            calls[made.name] += f"# {is_now.st_size} bytes, changed {is_now.st_mtime_ns}\n"
     # At any moment what was made is listed, so that a call that was cut short can be repeated.
     made_before = folder / ".family"
     old = text(made_before).splitlines() if made_before.exists() else []
@@ -534,12 +537,11 @@ def family(args: argparse.Namespace) -> int:
                 left.unlink(missing_ok=True)
     with output(str(made_before), parents=True) as file:
         file.writelines(f"{name}\n" for name in calls)
-    for name, call in calls.items():
+    for name, written in calls.items():
         path = folder / f"{name}.args"
-        words = shlex.join(call) + "\n"
-        if not path.exists() or text(path) != words:
+        if not path.exists() or text(path) != written:
             with output(str(path)) as file:
-                file.write(words)
+                file.write(written)
     print(
         json.dumps({"instances": list(calls), "complete": True}) if args.json else "\n".join(calls)
     )

@@ -19,6 +19,7 @@ from topomap.agreement import Agreement
 from topomap.commands import exit_status
 from topomap.errors import InputError, printable, say
 from topomap.experience import Experience
+from topomap.extras import need
 from topomap.files import output
 from topomap.options import LARGEST
 from topomap.pictures import ready
@@ -38,6 +39,7 @@ ROOM = 2_000_000  # letters that small pictures of one exploration take, about
 
 def report(args: argparse.Namespace) -> int:
     """Write the page about the instances."""
+    need("draw", "topomap report")
     seen = [(path, experience.read(path)) for path in args.instance]
     if len({path for path, _ in seen}) < len(seen):
         raise InputError("topomap report: an instance is named twice")

@@ -10,7 +10,9 @@ from pathlib import Path
 from topomap import exports, scenes, words
 from topomap.commands import exit_status
 from topomap.errors import DONE, INTERRUPTED, InputError, say
+from topomap.extras import need
 from topomap.files import output
+from topomap.folders import INSTANCES
 from topomap.query import Query
 from topomap.scenes import Scene
 from topomap.solver import Stopped, Watch
@@ -37,6 +39,7 @@ def draw(args: argparse.Namespace) -> int:
     form = Path(args.output).suffix[1:].lower()
     if form not in FORMATS:
         raise InputError(f"{args.output}: a picture is {', '.join(FORMATS)}, by its last letters")
+    need("draw", f"topomap {args.command}")
     scene, status = _scene(args)
     if scene is not None:
         ready()
@@ -49,6 +52,7 @@ def draw(args: argparse.Namespace) -> int:
 
 def show(args: argparse.Namespace) -> int:
     """Print a map."""
+    need("draw", f"topomap {args.command}")
     scene, status = _scene(args)
     if scene is None:
         return status
@@ -69,6 +73,7 @@ def show(args: argparse.Namespace) -> int:
 
 def export(args: argparse.Namespace) -> int:
     """Write a map for other tools."""
+    need("draw", f"topomap {args.command}")
     scene, status = _scene(args)
     if scene is None:
         return status
@@ -104,13 +109,14 @@ def _scene(args: argparse.Namespace) -> tuple[Scene | None, int]:
 
 def figures(args: argparse.Namespace) -> int:
     """Draw the paper's figures, and some more, into a folder."""
+    need("draw", "topomap figures")
     ready()
     from topomap import draw
     from topomap.figures import figures
 
     folder = Path(args.directory)
     with Watch() as watch:
-        made = figures(Path(args.instances), watch)
+        made = figures(Path(args.instances or INSTANCES), watch)
         chosen = args.figure or list(made)
         for name in chosen:
             if name not in made:

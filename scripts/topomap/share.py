@@ -16,6 +16,7 @@ from typing import Any, Protocol, TypeVar
 
 from topomap import solver
 from topomap.errors import InputError
+from topomap.extras import need
 from topomap.solver import INTERRUPT, MEMORY, Stopped, Watch
 
 Unit = TypeVar("Unit")
@@ -161,10 +162,9 @@ class Cluster:
     def __init__(self, address: str):
         if not address.strip():  # of which Dask would make a cluster of its own
             raise InputError("--dask: an empty address")
-        try:
-            import distributed
-        except ImportError:
-            raise InputError("--dask: not installed; pip install 'topomap[dask]'") from None
+        need("dask", "--dask")
+        import distributed
+
         logging.getLogger("distributed").setLevel(logging.CRITICAL)
         self._address, self._dask = address, distributed
         try:
