@@ -4,7 +4,7 @@
 # make lint       check style and types
 # make instances  make the batch that instances/batch.txt lists (try make -j2 instances)
 # make bench      time the encodings and the search, write docs/benchmark.md, then what steps of
-#                 follow and what questions take, docs/online.md, docs/asking.md (half an hour;
+#                 follow, questions and the start take, docs/{online,asking,start}.md (half an hour;
 #                 BENCH: options, such as BENCH='--only 8x8', BENCH=--quick, BENCH=--help)
 # make figures    draw the pictures of the README again, docs/figures/
 # make simulate   let robots explore twenty worlds, docs/simulations.json (three minutes)
@@ -94,6 +94,7 @@ bench: $(TOOLS)
 	PYTHONPATH=tests $(BIN)/python -m bench --networks "$(MAPS)" $(BENCH)
 	PYTHONPATH=tests $(BIN)/python -m bench.online
 	PYTHONPATH=tests $(BIN)/python -m bench.asking
+	PYTHONPATH=tests $(BIN)/python -m bench.start
 
 figures: $(SETUP)
 	$(BIN)/topomap figures --directory docs/figures

@@ -9,6 +9,7 @@ import time
 
 import pytest
 from conftest import BIN, ROOT, answers
+from topomap.cli import SUBCOMMANDS
 from topomap.experience import read
 from topomap.vocabulary import PARTS
 
@@ -325,13 +326,35 @@ def test_help_has_an_example(inside, command):
     assert "example" in done.stdout
 
 
+def loaded(*calls):
+    """The modules that are loaded when a process has run these calls, one after the other."""
+    program = (
+        "import json, sys\n"
+        "before = set(sys.modules)\n"
+        "from topomap.cli import main\n"
+        "for call in json.loads(sys.argv[1]):\n"
+        "    main(call)\n"
+        "print(*set(sys.modules) - before)"
+    )
+    call = [sys.executable, "-c", program, json.dumps(calls)]
+    done = subprocess.run(call, capture_output=True, text=True, cwd=ROOT, check=True)
+    return set(done.stdout.splitlines()[-1].split())
+
+
+def test_help_and_bad_usage_load_no_module_of_others():
+    calls = [["--version"], ["--help"], [], ["fly"], ["solve"], ["solve", GRID, "--spherical"]]
+    calls += [[name, "--help"] for name in SUBCOMMANDS if name != "clingo"]
+    tops = {name.partition(".")[0] for name in loaded(*calls)}
+    assert "topomap" in tops
+    assert tops <= sys.stdlib_module_names | {"topomap"}
+
+
 def test_a_command_starts_without_what_few_need():
     """Each of these takes as long to load as all else together, or longer."""
-    program = "import sys, topomap.cli; print(*sys.modules)"
-    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
-    loaded = set(done.stdout.split())
-    assert "clingo" in loaded
-    assert not loaded & {"networkx", "numpy", "scipy", "matplotlib", "distributed", "asyncio"}
+    modules = loaded(["solve", GRID])
+    assert "clingo" in modules
+    slow = {"tqdm", "networkx", "numpy", "scipy", "matplotlib", "distributed", "asyncio"}
+    assert not modules & (slow | {"multiprocessing", "defusedxml"})
 
 
 def test_a_closed_pipe_is_no_error():

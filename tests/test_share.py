@@ -21,6 +21,7 @@ from topomap.cli import main
 from topomap.errors import InputError
 from topomap.experience import read
 from topomap.journal import Journal
+from topomap.processes import Processes
 from topomap.query import Query
 from topomap.solver import Stopped, Watch, count, demand_cover, hypotheses
 from topomap.statistics import tree
@@ -262,7 +263,7 @@ def test_what_takes_long_to_send_arrives(crew):
 
 @pytest.mark.long
 def test_what_kills_each_worker_is_given_up():
-    with share.Processes(1) as crew, pytest.raises(Stopped, match=share.LOST):
+    with Processes(1) as crew, pytest.raises(Stopped, match=share.LOST):
         list(crew.each(die, range(3), QUIET))
 
 

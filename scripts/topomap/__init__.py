@@ -16,7 +16,9 @@ searches without it, reads answers, checks and compares them.
 ``hypothesis``      a node of the paper's search tree, entered and undone
 ``search``          the tree breadth-first, depth-first, best-first: the second way
 ``branching``       the paper's equation (1), node by node
-``share``           work shared out among processes, or a Dask cluster
+``share``           work shared out among those who do it
+``processes``       processes of this machine
+``cluster``         the workers of a Dask cluster
 ``statistics``      the figures of the search tree, by clingo and by search
 ``figure4``         the paper's table beside ours
 ``beyond``          what is beyond the paper's table

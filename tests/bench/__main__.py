@@ -52,7 +52,7 @@ def versions() -> dict[str, str]:
 
     changed = ", with changes" if git("status", "--porcelain", "encodings", "scripts") else ""
     return {
-        "topomap": f"{version('topomap')} at {git('rev-parse', '--short=10', 'HEAD')}{changed}",
+        "topomap": f"{version('topomap-asp')} at {git('rev-parse', '--short=10', 'HEAD')}{changed}",
         "clingo": version("clingo"),
         "Python": platform.python_version(),
     }
