@@ -172,6 +172,7 @@ def test_from_nothing(built, tmp_path):
 
 
 @pytest.mark.long
+@pytest.mark.timeout(1500)  # it installs all that the tests need, and runs some of them
 def test_the_sdist_makes_itself_and_runs_its_tests(built, tmp_path):
     """In a folder with a blank and letters that are not ASCII in its name."""
     sdist, _ = built
@@ -186,9 +187,8 @@ def test_the_sdist_makes_itself_and_runs_its_tests(built, tmp_path):
     assert done.stdout.splitlines()[-1] == "Every figure is the paper's."
     assert (folder / ".venv/bin/clingo").exists()
     subprocess.run(["make", ".venv/tools"], **call, check=True)
-    names = "cli", "faults", "hostile", "input", "readme", "rules", "share"
-    files = [f"tests/test_{name}.py" for name in names]
-    done = subprocess.run([".venv/bin/pytest", "-n2", "-m", "not long", *files], **call)
+    files = [f"tests/test_{name}.py" for name in ("cli", "input", "rules")]
+    done = subprocess.run([".venv/bin/pytest", "-m", "not long", *files], **call)
     assert done.returncode == 0, done.stdout[-3000:]
 
 
