@@ -376,7 +376,10 @@ def test_a_client_that_finds_no_cluster_is_closed(monkeypatch):
 def test_without_dask(capsys, monkeypatch):
     monkeypatch.setitem(sys.modules, "distributed", None)
     assert main(["count", GRID, "--dask", "tcp://127.0.0.1:1"]) == 2
-    assert capsys.readouterr().err == "--dask: not installed; pip install 'topomap[dask]'\n"
+    assert capsys.readouterr().err == (
+        "--dask: not installed; pip install '.[dask]' in topomap's folder, "
+        "or the wheel's file with [dask] after it\n"
+    )
 
 
 def test_workers_that_have_another_topomap(cluster, capsys, monkeypatch):

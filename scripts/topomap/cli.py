@@ -355,7 +355,7 @@ def _add_crew(command: Parser, but: str = "") -> None:
         metavar="ADDRESS",
         help="share it out among the workers of a running Dask cluster, such as "
         "tcp://127.0.0.1:8786; they need this version of topomap (and here the extra: "
-        "pip install 'topomap[dask]')",
+        "pip install '.[dask]' in topomap's folder, or the wheel's file with [dask] after it)",
     )
 
 

@@ -164,7 +164,10 @@ class Cluster:
         try:
             import distributed
         except ImportError:
-            raise InputError("--dask: not installed; pip install 'topomap[dask]'") from None
+            raise InputError(
+                "--dask: not installed; pip install '.[dask]' in topomap's folder, "
+                "or the wheel's file with [dask] after it"
+            ) from None
         logging.getLogger("distributed").setLevel(logging.CRITICAL)
         self._address, self._dask = address, distributed
         try:
