@@ -6,7 +6,7 @@
 # make bench      time the encodings and the search, write docs/benchmark.md, then what steps of
 #                 follow, questions and the start take, docs/{online,asking,start}.md (half an hour;
 #                 BENCH: options, such as BENCH='--only 8x8', BENCH=--quick, BENCH=--help)
-# make figures    draw the pictures of the README again, docs/figures/
+# make figures    draw the pictures of the pages again, docs/figures/
 # make simulate   let robots explore twenty worlds, docs/simulations.json (three minutes)
 # make beyond     count what is beyond the paper's table, docs/beyond.json (an hour)
 # make clean      remove what make made

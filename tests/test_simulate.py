@@ -245,7 +245,7 @@ def calls():
 
 @pytest.mark.parametrize("call", [*calls()])
 def test_the_table_is_what_comes_out(topomap, tmp_path, call):
-    """docs/simulations.json, and the README's table, have what the command gives now."""
+    """docs/simulations.json, and the table of docs/robots.md, have what the command gives now."""
     rows = json.loads((ROOT / "docs/simulations.json").read_text())["rows"]
     (row,) = (row for row in rows if row["environment"] == call)
     file = tmp_path / "worlds.txt"
@@ -253,9 +253,9 @@ def test_the_table_is_what_comes_out(topomap, tmp_path, call):
     assert json.loads(topomap("simulate", "list", file, "--json").stdout)["rows"] == [row]
 
 
-def test_the_readme_has_the_table():
+def test_the_page_has_the_table():
     rows = json.loads((ROOT / "docs/simulations.json").read_text())["rows"]
-    assert f"```text\n{simulating.table(rows)}```" in (ROOT / "README.md").read_text()
+    assert f"```text\n{simulating.table(rows)}```" in (ROOT / "docs/robots.md").read_text()
     listed = [" ".join(call) for _, call in expand(ROOT / "instances/worlds.txt")]
     assert [row["environment"] for row in rows] == listed
     assert len(rows) == 20

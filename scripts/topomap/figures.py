@@ -1,6 +1,6 @@
 """The paper's figures, and a few more, from computed answers (``make figures``)."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
@@ -10,6 +10,7 @@ import matplotlib as mpl
 import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
+from matplotlib.patches import Circle, Polygon
 from matplotlib.ticker import MaxNLocator, NullFormatter
 
 from topomap import branching, draw, figure4, scenes, search, solver
@@ -42,6 +43,8 @@ def figures(folder: Path, watch: Watch) -> dict[str, Callable[[], Figure]]:
             [of(f"manhattan-{name}") for name in ("tour20", "tour40-signs30", "tour88-signs30")],
             watch,
         ),
+        "first": lambda: first(watch),
+        "place": place,
     }
 
 
@@ -64,6 +67,124 @@ def best(experience: Experience, watch: Watch, *parts: str) -> list[Scene]:
 
 def titled(scene: Scene, caption: str) -> Scene:
     return replace(scene, caption=caption)
+
+
+def first(watch: Watch) -> Figure:
+    """For the first page: what a walk sees, place by place, two of the maps that are consistent
+    with it, and the one that is closed, which is the real one."""
+    made = instance(grid(2, 3), "EESWWNES")
+    found = maps(made.experience, watch)
+    (real,) = [scene for scene in found if not scene.world.pending()]
+    if tuple(real.at) != made.truth:
+        raise ValueError("the closed map is not the real one")
+    others = [scene for scene in found if scene is not real]
+    others.sort(key=lambda scene: (len(scene.world.paths()), len(scene.world.stars)))
+    captions = [
+        *(f"consistent; {len(scene.world.pending())} gateways pending" for scene in others[:2]),
+        "the only closed map: the real one",
+    ]
+    figure = draw.picture(
+        [
+            titled(scene, f"({letter}) {caption}")
+            for letter, scene, caption in zip("abc", [*others[:2], real], captions, strict=True)
+        ]
+    )
+    # Room for the log, on the left of the maps.
+    (wide, high), more = figure.get_size_inches(), 2.7
+    boxes = [axes.get_position() for axes in figure.axes]
+    figure.set_size_inches(wide + more, high)
+    for axes, box in zip(figure.axes, boxes, strict=True):
+        left = (box.x0 * wide + more) / (wide + more)
+        axes.set_position((left, box.y0, box.width * wide / (wide + more), box.height))
+    with mpl.rc_context(draw.STYLE):
+        log = figure.add_axes((0, boxes[0].y0, more / (wide + more), boxes[0].height))
+        _log(log, made.experience)
+        title = f"what was seen: {len(found)} maps explain it\narrows: where the agent turns"
+        log.set_title(title, fontsize=draw.TITLE, color=draw.INK, pad=5)
+    return figure
+
+
+def _log(axes: Any, experience: Experience) -> None:
+    """What is seen after each step, and how the agent then leaves."""
+    columns, wide, high = 3, 1.25, 1.12
+    rows = -(-len(experience.views) // columns)
+    for step, view in enumerate(experience.views):
+        row, column = divmod(step, columns)
+        centre = np.array([wide * column, -high * row])
+        turn = experience.turns[step] if step < experience.steps else None
+        _star(axes, centre, 0.36, experience.slots, view, turn, begins=step == 0)
+        text = f"step {step}" if step else "start"
+        x, y = centre
+        axes.text(x, y - 0.55, text, fontsize=6, color=draw.STEP, ha="center")
+    axes.set_xlim(-0.5 * wide, (columns - 0.5) * wide)
+    axes.set_ylim(-(rows - 1) * high - 0.6, 0.6)
+    axes.set_aspect("equal")
+    axes.set_axis_off()
+
+
+def _star(
+    axes: Any,
+    centre: Points,
+    length: float,
+    slots: int,
+    view: Collection[int],
+    turn: int | None,
+    begins: bool,
+) -> list[Points]:
+    """A place as the agent sees it: its gateways, the one stood at with the agent (below, for it
+    has that one behind it after a travel; above where an exploration begins), and an arrow
+    through the gateway that it turns to. Returns the directions of the slots, as vectors."""
+    first = np.pi / 2 if begins else -np.pi / 2
+    angles = [first - 2 * np.pi * slot / slots for slot in range(slots)]
+    outs = [np.array([np.cos(angle), np.sin(angle)]).round(6) for angle in angles]
+    for slot in sorted(view):
+        line = np.array([centre, centre + length * outs[slot]])
+        axes.plot(*line.T, color=draw.LINK, lw=2, solid_capstyle="butt", zorder=1)
+    if turn is not None:
+        line = np.array([centre + 0.5 * length * outs[turn], centre + 1.6 * length * outs[turn]])
+        _arrow(axes, line, BLUE)
+    size = 0.35 * length
+    style = {"fc": "white", "ec": draw.INK, "lw": 1.2, "zorder": 4}
+    axes.add_patch(Circle(tuple(centre), size, **style))
+    ahead = outs[0] if begins else -outs[0]
+    side = np.array([-ahead[1], ahead[0]])
+    foot = centre + 0.75 * length * outs[0] - 0.2 * length * ahead
+    points = [foot + 0.5 * length * ahead, foot + 0.25 * length * side, foot - 0.25 * length * side]
+    axes.add_patch(Polygon(points, fc=draw.AGENT, ec="white", lw=0.6, zorder=7))
+    return outs
+
+
+def place() -> Figure:
+    """How the slots of a place are numbered: at the start, and after a travel."""
+    panels: list[tuple[str, set[int], int, str]] = [
+        ("at the start you choose slot 0", {0, 1}, 0, "view(0,0). view(0,1).  turn(1,0)."),
+        (
+            "after a travel slot 0 is behind you",
+            {0, 2, 3},
+            3,
+            "view(1,0). view(1,2). view(1,3).  turn(2,3).",
+        ),
+    ]
+    with mpl.rc_context(draw.STYLE):
+        figure = _figure(5.6, 2.6)
+        for number, (title, view, turn, facts) in enumerate(panels):
+            axes = figure.add_axes((number / 2, 0, 0.5, 1))
+            outs = _star(axes, np.zeros(2), 0.5, 4, view, turn, begins=number == 0)
+            for slot, out in enumerate(outs):
+                if slot not in view:
+                    line = np.array([0.18 * out, 0.5 * out])
+                    axes.plot(*line.T, ":", color="#9aa4ae", lw=1.2)
+                far = 1.0 if slot == turn else 0.66
+                x, y = far * out
+                style: Any = {"fontsize": 10, "ha": "center", "va": "center"}
+                axes.text(x, y, str(slot), color=draw.INK, **style)
+            axes.text(0, 1.25, title, fontsize=8, color=draw.INK, ha="center")
+            axes.text(0, -1.1, facts, fontsize=7, color=draw.STEP, ha="center")
+            axes.set_xlim(-1.4, 1.4)
+            axes.set_ylim(-1.2, 1.4)
+            axes.set_aspect("equal")
+            axes.set_axis_off()
+    return figure
 
 
 def figure1(experience: Experience, watch: Watch) -> Figure:
