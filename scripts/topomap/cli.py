@@ -23,6 +23,7 @@ from topomap import (
     pictures,
     simulating,
     statements,
+    validate,
 )
 from topomap.environment import MOST_STEPS
 from topomap.errors import BAD_INPUT, DONE, INTERRUPTED, PARTIAL, InputError, say
@@ -89,6 +90,7 @@ def _parser() -> Parser:
     parser.add_argument("--version", action="version", version=f"topomap {__version__}")
     group = parser.add_subparsers(metavar="COMMAND", required=True)
     _add_generate(group)
+    _add_validate(group)
     _add_solve(group)
     _add_ask(group)
     _add_explain(group)
@@ -273,6 +275,23 @@ def _add_query(command: Parser, parts: Iterable[str], horizon: bool = True) -> N
     add = command.add_argument
     add("--json", action="store_true", help="write JSON")
     add("-o", "--output", metavar="FILE", help="file to write (default: stdout)")
+
+
+def _add_validate(group: Any) -> None:
+    command = _command(
+        group,
+        "validate",
+        validate.validate,
+        "tell all that is wrong with instances, and what in them looks like a mistake, without "
+        "solving anything; status 2 if one of them has a fault (a warning is none)",
+        """\
+  topomap validate walk.lp
+  topomap validate instances/*.lp --json
+  echo 'slots(4). veiw(0,0). turn(1,0).' | topomap validate -""",
+    )
+    add = command.add_argument
+    add("file", nargs="+", metavar="FILE", help="an instance; - is standard input")
+    add("--json", action="store_true", help="write JSON")
 
 
 def _add_solve(group: Any) -> None:
