@@ -267,11 +267,11 @@ class Facts:
             second = [*self.slots.values(), None][1] if self.slots else None
             many = len(self.slots) or "no"
             yield Fault(f"{many} facts slots(K); there must be one", second, lacks=not self.slots)
-        else:
-            ((slots, line),) = self.slots.items()
-            if fault := slots_fault(slots):
+        for number, line in self.slots.items():
+            if fault := slots_fault(number):
                 yield Fault(fault, line)
-                slots = None
+            elif len(self.slots) == 1:
+                slots = number
         last = max([0, *self.turns])
         later = sorted({0, *(step for step in self.turns if step > 0)})
         gaps = {step + 1: after for step, after in itertools.pairwise(later)}

@@ -75,7 +75,7 @@ def _lines(file: dict[str, Any]) -> Iterator[str]:
     name = file["file"]
     if file["valid"]:
         counts = [words.number(file["steps"], "step"), words.number(file["slots"], "slot")]
-        counts += [words.number(file["views"], "kind of views", "kinds of views")]
+        counts += [words.number(file["views"], "kind of view", "kinds of views")]
         counts += [words.number(file["landmarks"], "landmark")]
         yield f"{name}: valid: {', '.join(counts)}"
     for fault in file["faults"]:
