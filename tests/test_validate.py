@@ -146,6 +146,12 @@ def test_what_was_meant_is_told(judged, fact, fault):
         assert "is not a fact over slots/1, view/2, turn/2, landmark/2, drop/1, pick/1," in line
 
 
+def test_the_page_tells_each_form():
+    page = (ROOT / "docs/writing-instances.md").read_text()
+    rows = "".join(re.findall(r"^\| (`.*?) \|", page, re.M))
+    assert re.findall("`(.*?)`", rows) == [*FORMS.values()]
+
+
 def test_each_form_is_read_as_it_is_told():
     """The forms in messages are facts, once their letters are values."""
     values = {"K": "4", "T": "0", "S": "0", "L": "a"}

@@ -95,8 +95,8 @@ def strange(seen: Experience, facts: Facts) -> Iterator[Fault]:
         return
     if turn := seen.turns[0]:
         said = (
-            f"turn(1) is {turn}, so the start looks like an arrival: {START}. Count the view of "
-            "the start from the gateway that you leave by, then turn(1) is 0"
+            f"turn(1) is {turn}, so the start looks like an arrival: {START}. If no way is behind "
+            "you there, list none; count from the gateway that you leave by, and turn(1) is 0"
         )
         yield Fault(said, facts.turns[1][turn], 1)
     straight = f"0 is the way back, straight on is {seen.slots // 2}"
