@@ -21,7 +21,7 @@ TOOLS   := .venv/tools
 BATCH   := build/instances
 MAKERS  := $(addprefix scripts/topomap/,environment.py experience.py generate.py network.py \
              route.py topology.py)
-INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check --editable
+PIP     := $(BIN)/python -m pip --quiet --disable-pip-version-check
 
 .PHONY: all table instances batch test test-long mutate lint figures bench beyond simulate clean \
         committed anew
@@ -48,14 +48,14 @@ $(SETUP): pyproject.toml
 	$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "Python 3.11 or newer is needed: make PYTHON=...")'
 	$(if $(CURRENT),,rm -rf .venv)
 	$(PYTHON) -m venv .venv
-	$(INSTALL) '.[draw]'
+	$(PIP) install --editable '.[draw]'
 	printf '#!/bin/sh\nexec "$$(dirname "$$0")/topomap" clingo "$$@"\n' >$(BIN)/clingo
 	chmod +x $(BIN)/clingo
 	(cd -P .venv && pwd && bin/python -c '$(WHO)') >$@
 
 # What the tests and make lint need besides.
 $(TOOLS): $(SETUP)
-	$(INSTALL) '.[dev]'
+	$(PIP) install --editable '.[dev]'
 	touch $@
 
 table: $(SETUP)

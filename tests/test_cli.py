@@ -225,7 +225,7 @@ BAD = {
     "slots(4). view(0,0;0,1). turn(1,0;1,1). view(1,0).": "not a ground fact",
     "slots(4). view(0,0). view(0,1). turn(1,0). turn(1,1). view(1,0).": "step 1: more than one",
     "slots(4). view(0,0). place(1).": ":1: place(1) is not a fact over",
-    "slots(4). view(0,0). view(0).": "view(0) is not a fact over",
+    "slots(4). view(0,0). view(0).": ":1: view(0): view has 2 arguments, view(T,S)",
     "slots(4).\nview(0,0).\nview(X,0).": ":3: 'view(X,0)' is not a ground fact",
     "slots(4). view(0,0). a :- b.": "'a :- b' is not a ground fact",
     "slots(4). view(0,0). :- a.": "not a ground fact",

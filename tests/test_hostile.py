@@ -47,7 +47,7 @@ INSTANCES = {
     "Latin-1": (HEAD.encode() + b"% \xe4", "not a text file"),
     "UTF-16": (HEAD.encode("utf-16"), "not a text file"),
     "long name": (HEAD + "a" * 1_000_000 + "(0).", "is not a fact over"),
-    "many arguments": (f"{HEAD} view({'0,' * 1_000_000}0).", "is not a fact over"),
+    "many arguments": (f"{HEAD} view({'0,' * 1_000_000}0).", "view has 2 arguments, view(T,S)"),
     "open string": (HEAD + 'landmark(0,"' + "a" * 1_000_000, "does not end"),
     "many quotes": (HEAD + '"' * 1_000_001 + ".", ""),
 }
@@ -82,8 +82,17 @@ def limited():
 
 
 def refusal(folder, *arguments):
-    """The one line in which a command refuses, with status 2, and soon. One process takes
-    the calls in turn; a new one, after one that it did not survive."""
+    """The one line in which a command refuses, with status 2."""
+    status, out, err = called(folder, *arguments)
+    assert (status, out) == (2, ""), err[-500:]
+    assert err.count("\n") == 1
+    assert len(err) < 1000
+    return err
+
+
+def called(folder, *arguments):
+    """The status and the output of a command that ends soon. One process takes the calls in
+    turn; a new one, after one that it did not survive."""
     if not workers or workers[-1].poll() is not None:
         pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "text": True}
         workers.append(
@@ -94,13 +103,9 @@ def refusal(folder, *arguments):
     workers[-1].stdin.flush()
     answer = workers[-1].stdout.readline()
     assert answer, f"it died: status {workers[-1].wait()}"
-    status, out, err = json.loads(answer)
-    assert (status, out) == (2, ""), err[-500:]
-    assert err.count("\n") == 1
-    assert len(err) < 1000
     assert time.monotonic() - begun < 10
     assert not (folder / "made").exists()
-    return err
+    return json.loads(answer)
 
 
 @pytest.fixture(scope="module", autouse=True)
@@ -119,6 +124,26 @@ def test_hostile_instances(tmp_path, name):
     line = refusal(tmp_path, "solve", file)
     assert line.startswith(f"{file}:")
     assert fault in line
+    status, out, err = called(tmp_path, "validate", file)
+    assert (status, err) == (2, "")
+    first, *rest = out.splitlines(keepends=True)
+    assert first == line
+    assert all(fault.startswith(f"{file}:") and len(fault) < 1000 for fault in rest)
+    assert len(rest) <= 1000
+
+
+def test_large_instances_with_many_faults(tmp_path):
+    """They are cut short, and what is good but large is judged within the same time."""
+    file = tmp_path / "bad.lp"
+    for piece, lines in (("view(0,{}).", 1001), ("veiw({},0).", 1001), ("turn({},9).", 1001)):
+        file.write_text("slots(4). view(0,0).\n" + "".join(map(piece.format, range(10, 10_000))))
+        status, out, err = called(tmp_path, "validate", file)
+        assert (status, err, out.count("\n")) == (2, "", lines)
+    seen = "".join(f" view(0,{slot})." for slot in range(0, 20_000, 2))
+    file.write_text(f"slots(1000000).{seen} turn(1,0). view(1,0).")
+    status, out, err = called(tmp_path, "validate", file)
+    assert (status, err) == (0, "")
+    assert out.startswith(f"{file}: valid: 1 step, 1,000,000 slots, ")
 
 
 @pytest.mark.parametrize("piece", ["view(0,0). ", '"'])
@@ -411,4 +436,4 @@ def test_names_that_are_no_text(tmp_path):
     assert (done.returncode, done.stderr) == (3, "")
     assert topomap("solve", tmp_path / name, "--json", "-o", tmp_path / name).returncode == 0
     (tmp_path / name).write_text("slots(5).")
-    assert r"\udcff\n.lp: slots(5)" in refusal(tmp_path, "solve", tmp_path / name)
+    assert r"\udcff\n.lp:1: slots(5)" in refusal(tmp_path, "solve", tmp_path / name)

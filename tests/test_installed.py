@@ -19,6 +19,7 @@ CALLS = {  # of each subcommand, in this order, as some read what an earlier one
     "path": ["path", "instances"],
     "clingo": ["clingo", "{encodings}/topomap.lp", SNAKE, "0", "-q"],
     "generate": ["generate", "grid", "2", "3", "--route", "snake", "-o", "grid.lp"],
+    "validate": ["validate", SNAKE, "grid.lp"],
     "solve": ["solve", SNAKE, "--optimal", "--planar", "--json", "-o", "maps.json"],
     "ask": ["ask", SNAKE, "same(1,7)"],
     "explain": ["explain", SNAKE, "same(1,7)"],

@@ -356,7 +356,7 @@ def test_usage(capsys, monkeypatch):
         (["count", GRID, "--dask", "no://127.0.0.1:1"], "--dask no://127.0.0.1:1: "),
         (["count", GRID, "--dask", "tcp://127.0.0.1:1"], "--dask tcp://127.0.0.1:1: "),
     ):
-        monkeypatch.setattr(share, "PATIENCE", 1)
+        monkeypatch.setattr("topomap.cluster.PATIENCE", 1)
         assert main(call) == 2, call
         out, err = capsys.readouterr()
         assert (out, err.count("\n")) == ("", 1), err
@@ -365,7 +365,7 @@ def test_usage(capsys, monkeypatch):
 
 
 def test_a_client_that_finds_no_cluster_is_closed(monkeypatch):
-    monkeypatch.setattr(share, "PATIENCE", 1)
+    monkeypatch.setattr("topomap.cluster.PATIENCE", 1)
     gc.disable()
     try:
         for address in ("nowhere", "no://127.0.0.1:1", "tcp://127.0.0.1:1"):

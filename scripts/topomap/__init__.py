@@ -9,6 +9,7 @@ searches without it, reads answers, checks and compares them.
 ``network``         worlds read from street and corridor networks
 ``route``           explorations of a world: snake, letters, walk, tour
 ``experience``      what an exploration shows; instance files
+``validate``        all that is wrong with an instance, and what looks so
 ``generate``        one record from which name, header and facts come
 ``solver``          clingo on the encodings: enumeration, optimal maps
 ``phases``          large maps: what is certain first, by small programs

@@ -253,6 +253,23 @@ def _add_query(command: Parser, parts: Iterable[str], horizon: bool = True) -> N
     add("-o", "--output", metavar="FILE", help="file to write (default: stdout)")
 
 
+def _add_validate(group: Any) -> None:
+    command = _command(
+        group,
+        "validate",
+        "validate:validate",
+        "tell all that is wrong with instances, and what in them looks like a mistake, without "
+        "solving anything; status 2 if one of them has a fault (a warning is none)",
+        """\
+  topomap validate walk.lp
+  topomap validate instances/*.lp --json
+  echo 'slots(4). veiw(0,0). turn(1,0).' | topomap validate -""",
+    )
+    add = command.add_argument
+    add("file", nargs="+", metavar="FILE", help="an instance; - is standard input")
+    add("--json", action="store_true", help="write JSON")
+
+
 def _add_solve(group: Any) -> None:
     command = _command(
         group,
@@ -810,6 +827,7 @@ def _add_clingo(group: Any) -> None:
 
 SUBCOMMANDS: dict[str, Callable[[Any], None]] = {
     "generate": _add_generate,
+    "validate": _add_validate,
     "solve": _add_solve,
     "ask": _add_ask,
     "explain": _add_explain,

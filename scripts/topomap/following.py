@@ -22,13 +22,14 @@ import clingo
 from topomap import words
 from topomap.errors import DONE, NO, PARTIAL, InputError, of_file, say
 from topomap.experience import (
-    ARITY,
     MARKER,
-    MOST_SLOTS,
+    SIGNATURES,
     cut_short,
     ground_facts,
     marker_fault,
     marker_out,
+    misfit,
+    slots_fault,
 )
 from topomap.explore import plan, standing
 from topomap.online import Certain, Follower, Status
@@ -36,6 +37,7 @@ from topomap.options import LARGEST
 from topomap.report import map_line, steps_json
 from topomap.solver import INTERRUPT, Found, Stopped, Watch
 
+KNOWN = {**SIGNATURES, "undo": "undo(N)"}  # of which undo is a line by itself
 LONGEST = 2**20  # bytes of a line
 PAUSE = 0.1  # seconds between two looks at a file
 SHOWN = 3  # best maps that are told in text
@@ -83,25 +85,24 @@ class Record:
         text = line.strip()
         try:
             if text.startswith(("{", "[")):
-                return self._json(text, source, number)
+                return self._json(text)
             if match := _UNDO.fullmatch(text):
                 return self._undone(int(match[1] or 1))
             record = self
-            for _, fact in ground_facts(text, source, number):
+            for _, fact in ground_facts(text):
+                if isinstance(fact, str):
+                    raise _Fault(fact)
                 record = record._with(fact)
             return record._marked()
         except _Fault as fault:
             raise InputError(f"{source}:{number}: {fault}") from None
 
     def _with(self, fact: clingo.Symbol) -> "Record":
+        if fault := misfit(fact, KNOWN):
+            raise _Fault(fault)
         name, arguments = fact.name, fact.arguments
-        text = cut_short(str(fact))
-        if not fact.positive or ARITY.get(name) != len(arguments):
-            known = ", ".join(f"{known}/{arity}" for known, arity in ARITY.items())
-            raise _Fault(f"{text} is not a fact over {known}, undo/1")
-        numbers = arguments[:1] if name == "landmark" else arguments
-        if any(argument.type != clingo.SymbolType.Number for argument in numbers):
-            raise _Fault(f"{text}: a step or a slot is a whole number")
+        if name == "undo":
+            raise _Fault(f"{fact}: undo is a line by itself")
         first = arguments[0].number
         if name == "slots":
             return self._of(first)
@@ -126,8 +127,8 @@ class Record:
     def _of(self, slots: int) -> "Record":
         if self.slots is not None:
             raise _Fault("slots are told twice")
-        if slots < 2 or slots % 2 or slots > MOST_SLOTS:
-            raise _Fault(f"slots({slots}): K must be even, from 2 to {MOST_SLOTS}")
+        if fault := slots_fault(slots):
+            raise _Fault(fault)
         if self.steps:
             raise _Fault("slots are to be told before the first step")
         return replace(self, slots=slots)
@@ -176,7 +177,7 @@ class Record:
             raise _Fault(f"undo of {words.number(steps, 'step')}: to take back: {has}")
         return replace(self, steps=self.steps[:-steps])
 
-    def _json(self, text: str, source: str, number: int) -> "Record":
+    def _json(self, text: str) -> "Record":
         try:
             data = json.loads(text)
         except (ValueError, RecursionError):
@@ -219,10 +220,13 @@ class Record:
         for slot in view:
             record = record._seen(step, view=slot)
         for term in landmarks:
-            facts = list(ground_facts(f"landmark({step},{term}).", source, number))
-            if len(facts) != 1 or len(facts[0][1].arguments) != 2:
-                raise _Fault(f"landmarks: {cut_short(json.dumps(term))} is not a ground term")
-            record = record._with(facts[0][1])
+            facts = [fact for _, fact in ground_facts(f"landmark({step},{term}).")]
+            for fact in facts:
+                if isinstance(fact, str):
+                    raise _Fault(fact)
+                if len(facts) != 1 or len(fact.arguments) != 2:
+                    raise _Fault(f"landmarks: {cut_short(json.dumps(term))} is not a ground term")
+                record = record._with(fact)
         for name in MARKER:
             if data.get(name):
                 record = record._seen(step, mark=name)

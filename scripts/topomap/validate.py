@@ -1,0 +1,126 @@
+"""``topomap validate``: all that is wrong with instances, and what looks like a mistake.
+
+Nothing is solved. The faults are those for which every command refuses an instance. Warnings are
+of instances that can be meant as they are, but seldom are.
+"""
+
+import argparse
+import json
+from collections import defaultdict
+from collections.abc import Iterator
+from itertools import islice, pairwise
+from typing import Any
+
+from topomap import files, words
+from topomap.errors import BAD_INPUT, DONE, InputError, printable
+from topomap.experience import Experience, Facts, Fault
+
+MOST = 1000  # faults of a file that are told
+# So many turns back, each where there were other gateways, are strange, if there are no others:
+ALWAYS = 3  # in the whole exploration
+OFTEN = 4  # at places that look alike
+START = (
+    "after a travel, slot 0 is the gateway by which you arrived (behind you); at the start you "
+    "choose it, and turn(1) counts from it"
+)
+
+
+def validate(args: argparse.Namespace) -> int:
+    """Tell of each file what is wrong with it; status 2 if anything is."""
+    judged = [_judged(path) for path in args.file] if args.json else map(_judged, args.file)
+    if args.json:
+        print(json.dumps({"format": 1, "files": [*judged], "complete": True}, indent=1))
+        return DONE if all(file["valid"] for file in judged) else BAD_INPUT
+    status = DONE
+    for file in judged:
+        print(*map(printable, _lines(file)), sep="\n", flush=True)
+        status = status if file["valid"] else BAD_INPUT
+    return status
+
+
+def _judged(path: str) -> dict[str, Any]:
+    """What is to be told of a file."""
+    facts = Facts()
+    told: dict[str, Any] = {"file": path, "valid": False}
+    told |= dict.fromkeys(("steps", "slots", "views", "landmarks"))
+    try:
+        faults = [*islice(facts.faults(files.text(path)), MOST + 1)]
+    except InputError as error:
+        faults = [Fault(str(error).removeprefix(f"{path}: "))]
+    warnings: list[Fault] = []
+    if not faults:
+        seen = facts.experience()
+        warnings = [*strange(seen, facts)]
+        told |= {"valid": True, "steps": seen.steps, "slots": seen.slots}
+        told["views"] = len({*zip(seen.views, seen.landmarks, strict=True)})
+        told["landmarks"] = len(frozenset().union(*seen.landmarks))
+    more = None
+    if len(faults) > MOST:
+        more = f"only the first {MOST:,} are told"
+    elif facts.unread:
+        more = "what is missing can be told when every statement is a fact"
+    return told | {
+        "faults": [_json(fault, "fault") for fault in faults[:MOST]],
+        "more_faults": more,
+        "warnings": [_json(warning, "warning") for warning in warnings],
+    }
+
+
+def _json(fault: Fault, kind: str) -> dict[str, Any]:
+    return {"line": fault.line, "step": fault.step, kind: fault.said}
+
+
+def _lines(file: dict[str, Any]) -> Iterator[str]:
+    """The same in lines to read."""
+    name = file["file"]
+    if file["valid"]:
+        counts = [words.number(file["steps"], "step"), words.number(file["slots"], "slot")]
+        counts += [words.number(file["views"], "kind of view", "kinds of views")]
+        counts += [words.number(file["landmarks"], "landmark")]
+        yield f"{name}: valid: {', '.join(counts)}"
+    for fault in file["faults"]:
+        yield Fault(fault["fault"], fault["line"], fault["step"]).of(name)
+    if more := file["more_faults"]:
+        yield f"{name}: there may be more faults: {more}"
+    for warning in file["warnings"]:
+        said = f"warning: {warning['warning']}"
+        yield Fault(said, warning["line"], warning["step"]).of(name)
+
+
+def strange(seen: Experience, facts: Facts) -> Iterator[Fault]:
+    """What looks like a mistake in an experience; ``facts`` tell the lines."""
+    if not seen.steps:
+        said = "there is no turn(1), so the place where the agent starts is never left"
+        yield Fault(said, facts.steps[0], 0)
+        return
+    if turn := seen.turns[0]:
+        said = (
+            f"turn(1) is {turn}, so the start looks like an arrival: {START}. If no way is behind "
+            "you there, list none; count from the gateway that you leave by, and turn(1) is 0"
+        )
+        yield Fault(said, facts.turns[1][turn], 1)
+    straight = f"0 is the way back, straight on is {seen.slots // 2}"
+    choice = [step for step in range(2, seen.steps + 1) if len(seen.views[step - 1]) > 1]
+    if len(choice) >= ALWAYS and not any(seen.turns[1:]):
+        said = f"every turn from step 2 is 0: the agent turns back at once everywhere; {straight}"
+        yield Fault(said, facts.turns[2][0], 2)
+        return
+    kinds: dict[Any, list[int]] = defaultdict(list)
+    for step in choice:
+        kinds[_kind(seen, step - 1)].append(step)
+    for steps in kinds.values():
+        if len(steps) >= OFTEN and not any(seen.turns[step - 1] for step in steps):
+            first = steps[0] - 1
+            said = (
+                "places that look like the one after this step are never left but by the way back, "
+                f"in {len(steps)} visits, though they have other gateways; {straight}"
+            )
+            yield Fault(said, facts.steps[first], first)
+
+
+def _kind(seen: Experience, step: int) -> Any:
+    """What a place looks like, from whichever gateway it is come to: its landmarks, and how far
+    its gateways lie apart. Their order is left out, which makes warnings fewer, and none wrong."""
+    view = sorted(seen.views[step])
+    apart = [after - before for before, after in pairwise(view)]
+    return tuple(sorted([*apart, seen.slots - sum(apart)])), seen.landmarks[step]
