@@ -13,10 +13,12 @@ from collections import Counter
 
 import pytest
 from conftest import BIN, ROOT, TRIED, run
+from topomap import scenes
 from topomap.environment import by_bearing, flat_bearing, grid, lattice, maze, world
 from topomap.experience import explore
 from topomap.layout import layout, straight
 from topomap.scenes import Scene
+from topomap.solver import Query, Watch
 from topomap.terminal import ARROWS, ASCII, BRAILLE, DOTS, LETTERS, text
 from topomap.topology import TopologicalMap
 
@@ -536,7 +538,7 @@ def test_maps_of_clingo_are_shown_with_their_instance(topomap, inside, closed, t
     given.write_text(closed)
     ours = [tuple(map(tuple, one["at"])) for one in json.loads(solved.read_text())["maps"]]
     witnesses = json.loads(closed)["Call"][0]["Witnesses"]
-    for number, witness in enumerate(witnesses, 1):
+    for number, witness in list(enumerate(witnesses, 1))[::3]:
         atoms = [tuple(map(int, re.findall(r"\d+", atom))) for atom in witness["Value"]]
         same = ours.index(tuple(sorted(atoms))) + 1
         shown = inside("show", GRID, given, "--map", number)
@@ -545,7 +547,7 @@ def test_maps_of_clingo_are_shown_with_their_instance(topomap, inside, closed, t
         head, *rest = shown.stdout.splitlines()
         assert head == f"grid-3x3-snake: map {number} of {len(witnesses)} given"
         assert rest == alone.stdout.splitlines()[1:]
-    piped = topomap("show", GRID, "-", "--map", len(witnesses), input=closed)
+    piped = topomap("show", GRID, "-", "--map", number, input=closed)
     assert (piped.stdout, piped.stderr) == (shown.stdout, "")
 
 
@@ -565,26 +567,29 @@ def test_maps_of_clingo_are_shown_with_their_instance(topomap, inside, closed, t
         ),
     ],
 )
-def test_a_map_of_clingo_is_the_only_one_given_if_clingo_gave_all(
-    inside, tmp_path, arguments, title
-):
+def test_a_map_of_clingo_is_the_only_one_given_if_clingo_gave_all(tmp_path, arguments, title):
     file = tmp_path / "maps.json"
     file.write_text(clingo(*arguments))
-    done = inside("show", GRID, file)
-    assert (done.returncode, done.stderr) == (0, "")
-    assert done.stdout.startswith(f"grid-3x3-snake: {title}\n")
+    assert first(file).title.startswith(f"grid-3x3-snake: {title}\n")
 
 
-def test_an_interrupted_clingo_has_not_given_all(inside, tmp_path, closed):
+def first(file):
+    """The first map of a file, as it is shown."""
+    found, fault = scenes.read(str(ROOT / GRID), Query(), Watch(quiet=True), str(file))
+    assert fault is None
+    return found[0]
+
+
+def test_an_interrupted_clingo_has_not_given_all(tmp_path, closed):
     file = tmp_path / "maps.json"
     told = json.loads(closed)
     for change in ({"More": "yes"}, {"Number": 9}, {"More": "no", "Brave": "yes"}, None):
         file.write_text(json.dumps({**told, "Models": {**told["Models"], **(change or {})}}))
-        head = inside("show", GRID, file).stdout.partition("\n")[0]
-        assert head == f"grid-3x3-snake: map 1 of 4 {'found' if change else 'given'}"
+        which = f"map 1 of 4 {'found' if change else 'given'}"
+        assert first(file).title.startswith(f"grid-3x3-snake: {which}\n")
     del told["Models"]
     file.write_text(json.dumps(told))
-    assert inside("show", GRID, file).stdout.startswith("grid-3x3-snake: map 1 of 4 found\n")
+    assert first(file).title.startswith("grid-3x3-snake: map 1 of 4 found\n")
 
 
 def test_maps_of_clingo_are_not_shown_without_the_right_instance(inside, tmp_path, closed):
