@@ -423,7 +423,7 @@ def test_no_map(topomap):
         done = topomap("ask", instance, "planar", "not planar", *extra)
         assert (done.returncode, done.stdout) == (1, "no map is consistent with it\n")
         answer = json.loads(topomap("ask", instance, "planar", *extra, "--json").stdout)
-        assert answer["maps"] is False
+        assert answer["has_maps"] is False
         assert answer["complete"] is True
         assert answer["statements"] == []
 

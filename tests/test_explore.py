@@ -405,7 +405,7 @@ def test_stock_clingo_gives_the_walk(topomap, tmp_path, marker):
     ((_, proof),) = by_clingo(["bisimilar"], facts)
     bisimilar = [atom for atom in proof if atom.startswith("bisimilar")]
     assert bisimilar == (
-        [] if marker else [f"bisimilar({a},{b})" for a, b in [made["untold"][0]["maps"]]]
+        [] if marker else [f"bisimilar({a},{b})" for a, b in [made["untold"][0]["map_numbers"]]]
     )
     done = run("clingo", ENCODINGS / "explore.lp", "-", *options, input=facts)
     assert f"Optimization : {' '.join(map(str, cost))}" in done.stdout.splitlines()
@@ -496,8 +496,8 @@ def test_bad_input_is_one_line(topomap, tmp_path):
     for content in ("no", [], {}, {"marker": 1, "proofs": [], "horizon": 16, "maps": []}):
         refused(content, "explore --proof", option="--check")
     proof = {"marker": False, "horizon": 16, "maps": [{"at": steps}]}
-    itself = {"maps": [1, 1], "why": "bisimilar", "related": []}
-    for one in (None, {}, {**itself, "maps": [1, 2]}, itself):
+    itself = {"map_numbers": [1, 1], "why": "bisimilar", "related": []}
+    for one in (None, {}, {**itself, "map_numbers": [1, 2]}, itself):
         refused({**proof, "proofs": [one]}, "proof 1", "explore --proof", option="--check")
     refused({**proof, "horizon": True, "proofs": []}, "explore --proof", option="--check")
     none = topomap("explore", SNAKES[3][0], "--bound", "3")

@@ -2,6 +2,7 @@
 
 import base64
 import hashlib
+import json
 import math
 import os
 import random
@@ -513,6 +514,45 @@ def test_pictures_and_tables_have_names(three):
     assert all(len(e["aria-label"]) > 5 for e in pictures)
     assert len(page.tables) == len(page.all("table")) == len(page.all("caption"))
     assert all("scope" in e for e in page.all("th"))
+
+
+def test_a_page_of_maps_that_are_given(tmp_path, capsys):
+    """They are the maps of the page, of the kind that is claimed and no other."""
+    solved, given = tmp_path / "solved.json", tmp_path / "given.json"
+    cli.main(["solve", str(ROOT / GRID), "--closed", "--json", "-o", str(solved)])
+    told = json.loads(solved.read_text())
+    values = [[f"at({t},{p},{s})" for t, p, s in one["at"]] for one in told["maps"]]
+    answer = {
+        "Call": [{"Witnesses": [{"Value": value} for value in values]}],
+        "Models": {"Number": len(values), "More": "no"},
+    }
+    limit = "--timeout", "2", "--maps", "2"
+    for more, others in (("no", ""), ("yes", ", others may exist")):
+        answer["Models"]["More"] = more
+        given.write_text(json.dumps(answer))
+        _, page = report(tmp_path / "page.html", ROOT / GRID, "--maps-from", given, *limit)
+        text = " ".join(page.text.split())
+        assert f"{len(values)} maps given{others}; the first 2 are shown." in text
+        assert "The maps given" in text
+        assert "The best maps" not in text
+        assert "Visits that are at one place in all the maps given:" in text
+        assert f"--maps-from {given}" in text
+    _, page = report(tmp_path / "page.html", ROOT / GRID, "--maps-from", solved, *limit)
+    assert f"{len(values)} maps given: consistent; the first 2" in " ".join(page.text.split())
+    capsys.readouterr()
+    other = ROOT / "instances/grid-3x4-paper.lp"
+    for call, fault in (
+        ((other,), f"{given}: map 1: 16 steps, the instance has 21"),
+        ((ROOT / GRID, "--planar"), "it breaks the rule planar of check.lp"),
+        ((ROOT / GRID, "--bound", "8"), "it breaks the rule bound(8) of check.lp"),
+        ((ROOT / GRID, other), "topomap report: --maps-from goes with one instance"),
+    ):
+        none = tmp_path / "none.html"
+        call = ["report", *map(str, call), "--maps-from", str(given), "-o", str(none)]
+        assert cli.main(call) == 2
+        told = capsys.readouterr().err
+        assert (told.count("\n"), none.exists()) == (1, False)
+        assert fault in told
 
 
 def test_a_limit_leaves_a_page_that_says_so(tmp_path, capsys):

@@ -12,11 +12,14 @@ import subprocess
 from collections import Counter
 
 import pytest
-from conftest import BIN, ROOT, TRIED
+from conftest import BIN, ROOT, TRIED, run
+from topomap import scenes
 from topomap.environment import by_bearing, flat_bearing, grid, lattice, maze, world
 from topomap.experience import explore
 from topomap.layout import layout, straight
+from topomap.query import Query
 from topomap.scenes import Scene
+from topomap.solver import Watch
 from topomap.terminal import ARROWS, ASCII, BRAILLE, DOTS, LETTERS, text
 from topomap.topology import TopologicalMap
 
@@ -509,3 +512,123 @@ def test_places_that_are_drawn_close_together_make_no_endless_picture(monkeypatc
     rows, _ = printed(scene, 80)
     assert is_dots(rows)
     assert 80 < max(map(len, rows)) < 5 * 80
+
+
+# Maps that clingo found
+
+
+GRID, PAPER = "instances/grid-3x3-snake.lp", "instances/grid-3x4-paper.lp"
+
+
+def clingo(*arguments, instance=GRID):
+    """What clingo prints of an instance, as JSON."""
+    parts = [f"encodings/{part}.lp" for part in arguments if not part.startswith("-")]
+    options = [option for option in arguments if option.startswith("-")]
+    return run("clingo", "encodings/topomap.lp", *parts, instance, "--outf=2", *options).stdout
+
+
+@pytest.fixture(scope="module")
+def closed():
+    return clingo("closed", "-n0")
+
+
+def test_maps_of_clingo_are_shown_with_their_instance(topomap, inside, closed, tmp_path):
+    """As they are shown from what solve writes of them."""
+    solved, given = tmp_path / "solved.json", tmp_path / "given.json"
+    inside("solve", GRID, "--closed", "--json", "-o", solved)
+    given.write_text(closed)
+    ours = [tuple(map(tuple, one["at"])) for one in json.loads(solved.read_text())["maps"]]
+    witnesses = json.loads(closed)["Call"][0]["Witnesses"]
+    for number, witness in list(enumerate(witnesses, 1))[::3]:
+        atoms = [tuple(map(int, re.findall(r"\d+", atom))) for atom in witness["Value"]]
+        same = ours.index(tuple(sorted(atoms))) + 1
+        shown = inside("show", GRID, given, "--map", number)
+        alone = inside("show", solved, "--map", same)
+        assert (shown.returncode, shown.stderr, alone.returncode) == (0, "", 0)
+        head, *rest = shown.stdout.splitlines()
+        assert head == f"grid-3x3-snake: map {number} of {len(witnesses)} given"
+        assert rest == alone.stdout.splitlines()[1:]
+    piped = topomap("show", GRID, "-", "--map", number, input=closed)
+    assert (piped.stdout, piped.stderr) == (shown.stdout, "")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "title"),
+    [
+        (("closed", "planar", "perpendicular", "-n0"), "the only map given"),
+        (("closed", "planar", "perpendicular", "-n1"), "map 1 of 1 found"),
+        (("closed", "-n1"), "map 1 of 1 found"),
+        (("closed", "boundary", "minimal", "-n0", "--opt-mode=optN"), "map 1 of 2 given"),
+        # There are two best maps; clingo says More: no, and Optimal: 1.
+        (("closed", "boundary", "minimal", "-n0"), "map 1 of 1 found"),
+        (("closed", "-n0", "-q1"), "map 1 of 1 found"),
+        (
+            ("planar", "boundary", "minimal", "closed", "-n0", "--opt-mode=optN"),
+            "the only map given",
+        ),
+    ],
+)
+def test_a_map_of_clingo_is_the_only_one_given_if_clingo_gave_all(tmp_path, arguments, title):
+    file = tmp_path / "maps.json"
+    file.write_text(clingo(*arguments))
+    assert first(file).title.startswith(f"grid-3x3-snake: {title}\n")
+
+
+def first(file):
+    """The first map of a file, as it is shown."""
+    found, fault = scenes.read(str(ROOT / GRID), Query(), Watch(quiet=True), str(file))
+    assert fault is None
+    return found[0]
+
+
+def test_an_interrupted_clingo_has_not_given_all(tmp_path, closed):
+    file = tmp_path / "maps.json"
+    told = json.loads(closed)
+    for change in ({"More": "yes"}, {"Number": 9}, {"More": "no", "Brave": "yes"}, None):
+        file.write_text(json.dumps({**told, "Models": {**told["Models"], **(change or {})}}))
+        which = f"map 1 of 4 {'found' if change else 'given'}"
+        assert first(file).title.startswith(f"grid-3x3-snake: {which}\n")
+    del told["Models"]
+    file.write_text(json.dumps(told))
+    assert first(file).title.startswith("grid-3x3-snake: map 1 of 4 found\n")
+
+
+def test_maps_of_clingo_are_not_shown_without_the_right_instance(inside, tmp_path, closed):
+    file = tmp_path / "maps.json"
+    file.write_text(closed)
+    for call, fault in (
+        ((file,), f"{file}: maps from clingo: the instance is wanted before them, "),
+        ((PAPER, file), f"{file}: map 1: step "),
+        ((GRID, file, "--planar"), f"{file}: the maps are given: parts, bound, horizon"),
+        ((GRID, file, "--map", 5), f"{file}: it has 4 maps, there is no map 5"),
+        ((file, file), f"{file}: the facts of an instance are wanted"),
+        (("-", "-"), "-: standard input is the instance or the maps, not both"),
+    ):
+        for command in (["show"], ["export", "--format", "dot"]):
+            done = inside(*command, *call)
+            assert (done.returncode, done.stdout, done.stderr.count("\n")) == (2, "", 1)
+            assert done.stderr.startswith(fault), done.stderr
+    picture = tmp_path / "map.svg"
+    done = inside("draw", PAPER, file, "-o", picture)
+    assert (done.returncode, picture.exists()) == (2, False)
+    assert inside("draw", GRID, file, "-o", picture).returncode == 0
+    assert "map 2 of 4 given" in inside("export", GRID, file, "--format=dot", "--map=2").stdout
+
+
+def test_a_map_that_disbelieves_is_shown_as_it_thinks(topomap):
+    instance = "instances/grid-3x3-misread.lp"
+    options = "noise", "closed", "planar", "minimal", "-n0", "--opt-mode=optN", "--const=noise=1"
+    given = clingo(*options, instance=instance)
+    assert "misread" in given
+    done = topomap("show", instance, "-", input=given)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert "9 places, 12 links, 6 paths, planar" in done.stdout
+
+
+def test_of_a_file_of_several_instances_those_of_one_are_shown(inside, tmp_path):
+    file = tmp_path / "maps.json"
+    assert not inside("solve", GRID, PAPER, "--optimal", "--json", "-o", file).returncode
+    done = inside("show", PAPER, file, "--map", 8)
+    assert done.stdout.startswith("grid-3x4-paper: map 8 of 8, optimal\n")
+    done = inside("show", "instances/grid-4x4-snake.lp", file)
+    assert (done.returncode, done.stderr.count("\n")) == (2, 1)

@@ -26,6 +26,7 @@ searches without it, reads answers, checks and compares them.
 ``check``           two checkers of maps: check.lp, and one by definition
 ``maps``            maps that anyone made: read, and judged
 ``journal``         long runs go on where they were cut
+``formats``         what all JSON has in common: its format, and whether it is whole
 ``report``          maps as JSON, and as lines to read
 ``statements``      statements about maps, as ask and explain take them
 ``ask``             whether they hold in all maps, in some or in none

@@ -6,7 +6,6 @@ asked again. Of the best maps, first what the best ones cost is found, and is th
 """
 
 import argparse
-import json
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
@@ -14,7 +13,7 @@ from typing import Any
 
 import clingo
 
-from topomap import statements
+from topomap import formats, statements
 from topomap.commands import STOPS, exit_status
 from topomap.experience import Experience, read
 from topomap.files import output
@@ -64,7 +63,7 @@ class Answers:
         self.each = [Answer(statement) for statement in asked]
         self.terms = dict.fromkeys(statement.term for statement in asked)
         self.some: bool | None = None
-        self.kind = ""
+        self.kind: str | None = None
         self.cost: tuple[int, ...] = ()
 
     def settle(self, experience: Experience, query: Query, optimal: bool, watch: Watch) -> None:
@@ -75,6 +74,7 @@ class Answers:
         best = query.having("boundary", "minimal")
         self._settle(experience, best.having("closed"), "optimal", watch)
         if not self.some:
+            self.some, self.kind = None, None  # that no map is closed does not settle it
             self._settle(experience, best, "best so far", watch)
 
     def _settle(self, experience: Experience, query: Query, kind: str, watch: Watch) -> None:
@@ -166,7 +166,7 @@ def ask(args: argparse.Namespace) -> int:
             except STOPS as stop:
                 fault = str(stop) or MEMORY
         if args.json:
-            out.write(_json(args, experience, query, answers, fault) + "\n")
+            out.write(_json(args, experience, query, answers, fault))
         else:
             out.writelines(f"{line}\n" for line in _lines(experience, answers, fault))
     return exit_status(fault, bool(answers.some))
@@ -174,7 +174,7 @@ def ask(args: argparse.Namespace) -> int:
 
 def _lines(experience: Experience, answers: Answers, fault: str | None) -> list[str]:
     """The answers to read."""
-    if answers.some is False and not fault:
+    if answers.some is False:
         return ["no map is consistent with it"]
     lines = []
     for answer in answers.each:
@@ -202,7 +202,7 @@ def _json(
     def whole(found: Found | None) -> Any:
         return found and map_json(experience.map_of(found.at), found.at)
 
-    return json.dumps(
+    return formats.line(
         {
             "instance": args.instance,
             "slots": experience.slots,
@@ -211,8 +211,8 @@ def _json(
             "horizon": query.horizon,
             "optimal": args.optimal,
             "kind": answers.kind,
-            "cost": answers.cost,
-            "maps": answers.some,
+            "cost": answers.cost if answers.some else None,
+            "has_maps": answers.some,
             "statements": [
                 {
                     "statement": answer.statement.text,
@@ -223,7 +223,6 @@ def _json(
                 }
                 for answer in (answers.each if answers.some is not False else ())
             ],
-            "complete": fault is None,
-            "fault": fault,
-        }
+        },
+        fault,
     )

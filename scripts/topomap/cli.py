@@ -539,6 +539,13 @@ def _add_scene(command: Parser) -> None:
         help="an instance, of which the optimal maps are shown, or the best so far, with what "
         "is asked for below; or maps, from topomap solve --json",
     )
+    add(
+        "given",
+        nargs="?",
+        metavar="MAPS.json",
+        help="the maps of that instance to show instead, from clingo --outf=2 or topomap solve "
+        "--json (- is standard input)",
+    )
     add("--map", type=_number(int, 1), metavar="N", help="the N-th of the maps (default: 1)")
     _add_asked(command, PRUNING, limit="stop the search for maps after S seconds; then draw")
 
@@ -580,6 +587,12 @@ def _add_report(group: Any) -> None:
         default=6,
         metavar="N",
         help="draw N of the best maps at most (default: %(default)s)",
+    )
+    add(
+        "--maps-from",
+        metavar="MAPS.json",
+        help="tell of these maps instead of the best ones, from clingo --outf=2 or topomap solve "
+        "--json (- is standard input)",
     )
     add("-o", "--output", metavar="FILE", help="file to write (default: stdout)")
     _add_asked(command, PRUNING)
@@ -660,7 +673,9 @@ def _add_show(group: Any) -> None:
         "print a map in the lines of a terminal, then in words",
         """\
   topomap show instances/grid-4x4-snake.lp --perpendicular
-  topomap show maps.json --map 3 | less -S""",
+  topomap show maps.json --map 3 | less -S
+  clingo encodings/topomap.lp encodings/closed.lp instances/grid-3x3-snake.lp 0 --outf=2 \\
+    | topomap show instances/grid-3x3-snake.lp -""",
     )
     _add_scene(command)
 

@@ -13,8 +13,19 @@ from functools import partial
 from pathlib import Path
 from typing import IO, Any
 
-from topomap import beyond, branching, environment, figure4, maps, network, search, share, solver
-from topomap.check import STEP_RULES, by_definition
+from topomap import (
+    beyond,
+    branching,
+    environment,
+    figure4,
+    formats,
+    maps,
+    network,
+    search,
+    share,
+    solver,
+)
+from topomap.check import STEP_RULES
 from topomap.environment import Environment
 from topomap.errors import DONE, INTERRUPTED, NO, PARTIAL, InputError, say
 from topomap.experience import Experience, read
@@ -27,12 +38,11 @@ from topomap.options import LARGEST, MOST_PLACES
 from topomap.query import Query
 from topomap.report import Report, steps_json
 from topomap.share import ALONE, Crew
-from topomap.solver import INTERRUPT, MEMORY, Cube, Found, Stopped, Watch, Way, best
+from topomap.solver import INTERRUPT, MEMORY, UNPROVED, Cube, Found, Stopped, Watch, Way, best
 from topomap.statistics import KEYS, Tally, tree
 from topomap.topology import TopologicalMap
 from topomap.vocabulary import PARTS, PROPERTIES
 
-BEST_FIRST = "closed, best-first"
 STOPS = Stopped, MemoryError  # what leaves a partial answer
 
 
@@ -53,8 +63,8 @@ def generate(args: argparse.Namespace) -> int:
         raise InputError(f"{target}: it cannot be both --output and --truth")
     with contextlib.ExitStack() as files:
         if args.truth:
-            truth = json.dumps({"maps": [{"at": steps_json(made.truth)}], "complete": True})
-            files.enter_context(output(args.truth)).write(truth + "\n")
+            truth = formats.line({"maps": [{"at": steps_json(made.truth)}]})
+            files.enter_context(output(args.truth)).write(truth)
         if target or not args.json:
             files.enter_context(output(target)).write(made.text())
     if args.json:
@@ -64,9 +74,8 @@ def generate(args: argparse.Namespace) -> int:
             "header": made.header,
             "steps": made.experience.steps,
             "facts": None if target else made.experience.facts(),
-            "complete": True,
         }
-        print(json.dumps(summary))
+        print(formats.line(summary), end="")
     return DONE
 
 
@@ -128,28 +137,30 @@ def solve(args: argparse.Namespace) -> int:
         truth = _truth(args.truth, experience, args.horizon) if args.truth else None
         inputs.append((path, experience, truth))
     run = _run(args, *(experience for _, experience, _ in inputs))
-    statuses = []
+    statuses, faults = [], []
     with (
         _crew(args) as crew,
         Journal(args.output, run, args.resume, True) as journal,
         output(args.output) as out,
     ):
         if args.json and len(inputs) > 1:
-            out.write('{"results": [\n')
+            out.write(json.dumps(formats.headed({}))[:-1] + ', "results": [\n')
         for number, (path, experience, truth) in enumerate(inputs):
             if len(inputs) > 1:
                 out.write(",\n" * (number > 0) if args.json else f"{path}\n")
             kind = "optimal" if args.optimal else None
             report = Report(out, path, experience, _query(args), kind, truth, args.json)
-            statuses.append(_solve_one(args, experience, report, journal, crew))
-            if statuses[-1] == INTERRUPTED:
-                break
-            if statuses[-1] > NO:
+            fault = _solve_one(args, experience, report, journal, crew)
+            statuses.append(exit_status(fault, bool(report.count)))
+            if fault:
+                faults.append(fault)
                 journal.stop()
-        complete = len(statuses) == len(inputs) and max(statuses) <= NO
+            if fault == INTERRUPT:
+                break
         if args.json and len(inputs) > 1:
-            out.write(f'], "complete": {json.dumps(complete)}}}\n')
-        journal.complete = complete
+            last = faults[-1] if faults else None
+            out.write("], " + json.dumps(formats.ended(last))[1:] + "\n")
+        journal.complete = not faults
     return max(statuses)
 
 
@@ -176,7 +187,8 @@ def _with_noise(args: argparse.Namespace) -> None:
 
 def _solve_one(
     args: argparse.Namespace, experience: Experience, report: Report, journal: Journal, crew: Crew
-) -> int:
+) -> str | None:
+    """Write the maps of an instance; why they may not be all, if so."""
     fault, candidate = None, None
     with Watch(args.timeout) as watch:
         try:
@@ -191,9 +203,9 @@ def _solve_one(
         except STOPS as stop:
             fault = str(stop) or MEMORY
         if fault and candidate and not report.count:
-            report.add(candidate)
+            report.add(dataclasses.replace(candidate, kind=UNPROVED))
         report.end(fault)
-    return exit_status(fault, bool(report.count))
+    return fault
 
 
 def exit_status(fault: str | None, yes: bool) -> int:
@@ -283,15 +295,11 @@ def _truth(file: str, experience: Experience, horizon: int | None) -> Topologica
     entries = [entry for document in maps.read(file, MOST_BYTES) for entry in document.maps]
     if len(entries) != 1:
         raise InputError(f"{file}: {len(entries)} maps; the real map is one")
-    at = [(step, place, slot) for step, place, slot in entries[0]["at"]]
+    at = entries[0]["at"]
     if len(at) != experience.steps + 1:
         raise InputError(f"{file}: {len(at) - 1} steps, the instance has {experience.steps}")
-    wrong = [(step, rule) for rule, step in by_definition(experience, at) if rule in STEP_RULES]
-    if wrong:
-        step, rule = min(wrong)
-        raise InputError(f"{file}: step {step}: it breaks the rule {rule} of check.lp")
     last = experience.steps if horizon is None else horizon
-    return experience.map_of(tuple((place, slot) for _, place, slot in sorted(at)[: last + 1]))
+    return experience.map_of(maps.hypothesis(file, at, experience, rules=STEP_RULES)[: last + 1])
 
 
 def check(args: argparse.Namespace) -> int:
@@ -299,9 +307,7 @@ def check(args: argparse.Namespace) -> int:
     documents = maps.read(args.maps)
     said = any(document.claims.get("noise") is not None for document in documents)
     experience = read(args.instance, said or args.noise is not None)
-    if len(documents) > 1:  # of several instances
-        name = Path(args.instance).name
-        documents = [d for d in documents if Path(str(d.claims.get("instance"))).name == name]
+    documents = maps.of_instance(documents, args.instance)
     number = sum(len(document.maps) for document in documents)
     if not documents:
         raise InputError(f"{args.maps}: no maps of {args.instance} in it")
@@ -329,18 +335,16 @@ def check(args: argparse.Namespace) -> int:
                 "unsound": [dataclasses.asdict(verdict) for verdict in unsound],
                 "checked": len(checked),
                 "short": short,
-                "maps": number,
-                "complete": not fault,
-                "fault": fault,
+                "count": number,
             }
-            out.write(json.dumps(answer) + "\n")
+            out.write(formats.line(answer, fault))
         else:
             for verdict in unsound:
                 broken = [f"violation({rule},{step})" for rule, step in verdict.violations]
                 out.write(f"{verdict.where}: {'; '.join(broken + verdict.faults)}\n")
             noun = "map" if number == 1 else "maps"
             line = f"{len(checked)} of {number} {noun} checked" if fault else f"{number} {noun}"
-            line += f", {len(unsound) or 'none'} unsound"
+            line += f", {len(unsound) or 'none'}{' of these' * bool(fault)} unsound"
             if short:
                 line += f"; {short} of part of the {experience.steps} steps"
             out.write(line + (f"; partial: {fault}\n" if fault else "\n"))
@@ -385,12 +389,13 @@ def search_tree(args: argparse.Namespace) -> int:
         except STOPS as stop:
             fault = str(stop) or MEMORY
         figures = tally.figures()
-        note = "; the figures are of the nodes searched until then"
         if fault and args.order == "breadth":  # in the midst of the last level with a node
             whole = sum(map(bool, tally.per_step)) - 1
             figures = dict.fromkeys(KEYS) | {"per_step": tally.per_step[: max(0, whole)]}
-            note = ""
-        _write_figures(args, out, figures, fault, note)
+        elif fault:  # of no step all nodes are known; others may be better than the best so far
+            least = {key: figures[key] for key in (*KEYS, "per_step") if key != "optimal"}
+            figures = dict.fromkeys((*KEYS, "per_step")) | {"at_least": least}
+        _write_figures(args, out, figures, fault)
     return exit_status(fault, bool(tally.per_step[-1]))
 
 
@@ -399,12 +404,12 @@ def _best_first(args: argparse.Namespace, experience: Experience, query: Query) 
     fault = None
     nodes = 0
     with output(args.output) as out, Watch(args.timeout) as watch:
-        report = Report(out, args.instance, experience, query, BEST_FIRST, None, args.json)
+        report = Report(out, args.instance, experience, query, maps.BEST_FIRST, None, args.json)
         try:
             for node in search.best_first(search.root(experience, query), watch):
                 nodes += 1
                 if node.steps == node.experience.steps and node.closed():
-                    report.add(Found(node.dstates, BEST_FIRST, node.cost, proved=False))
+                    report.add(Found(node.dstates, maps.BEST_FIRST, node.cost, proved=False))
                     break
         except STOPS as stop:
             fault = str(stop) or MEMORY
@@ -417,20 +422,21 @@ def _write_figures(
     out: IO[str],
     figures: dict[str, Any],
     fault: str | None,
-    note: str = "",
 ) -> None:
-    """Write what ``count`` gives, or ``search``."""
+    """Write what ``count`` gives, or ``search``; of a search that was cut, ``at_least`` holds
+    what the nodes met until then come to."""
     if args.json:
-        answer = {"instance": args.instance, **figures, "complete": not fault, "fault": fault}
-        out.write(json.dumps(answer) + "\n")
+        out.write(formats.line({"instance": args.instance, **figures}, fault))
         return
-    out.write("hypotheses after each step: ")
-    out.write(" ".join(map(str, figures["per_step"])) + "\n")
+    least = figures.get("at_least")
+    told, more = (least, "at least ") if least else (figures, "")
+    steps = " ".join(map(str, told["per_step"])) or "not counted"
+    out.write(f"hypotheses after each step: {more}{steps}\n")
     for key in KEYS:
-        known = "not counted" if figures[key] is None else f"{figures[key]:,}"
+        known = "not counted" if told.get(key) is None else f"{more}{told[key]:,}"
         out.write(f"{figure4.WORDS[key]:<42}{known:>12}\n")
     if fault:
-        out.write(f"partial: {fault}{note}\n")
+        out.write(f"partial: {fault}\n")
 
 
 def branching_nodes(args: argparse.Namespace) -> int:
@@ -441,7 +447,8 @@ def branching_nodes(args: argparse.Namespace) -> int:
     fault = None
     with output(args.output) as out:
         if args.json:
-            out.write(json.dumps({"instance": args.instance})[:-1] + ', "nodes": [')
+            head = formats.headed({"instance": args.instance})
+            out.write(json.dumps(head)[:-1] + ', "nodes": [')
         try:
             with Watch(args.timeout) as watch:
                 for node in branching.branching(search.root(experience, query), watch):
@@ -451,12 +458,12 @@ def branching_nodes(args: argparse.Namespace) -> int:
         except STOPS as stop:
             fault = str(stop) or MEMORY
         if args.json:
-            tail = {"summary": summary.totals, "complete": not fault, "fault": fault}
+            tail = {"summary": summary.totals, **formats.ended(fault)}
             out.write("], " + json.dumps(tail)[1:] + "\n")
         else:
             out.write(branching.text(summary.totals))
             if fault:
-                out.write(f"partial: {fault}\n")
+                out.write(f"partial: {fault}; the figures are of the nodes met until then\n")
     return exit_status(fault, summary.holds)
 
 
@@ -484,14 +491,14 @@ def table(args: argparse.Namespace) -> int:
             for row in counted:
                 rows = sorted([*rows, row], key=lambda row: (row["environment"], row["planarity"]))
                 say(f"counted {len(rows)} of {columns} columns")
-            json.dump({"complete": True, "rows": rows}, file, indent=1)
+            json.dump(formats.answer({"rows": rows}), file, indent=1)
             file.write("\n")
             journal.complete = True
     except STOPS as stop:  # the file keeps an older, complete table
         fault = str(stop) or MEMORY
     different = [cell for row in rows for cell in figure4.differences(row)]
     if args.json:
-        print(json.dumps({"rows": rows, "complete": not fault, "fault": fault}))
+        print(formats.line({"rows": rows}, fault), end="")
         return exit_status(fault, not different)
     if rows:
         print(figure4.text(rows))
@@ -542,7 +549,8 @@ def family(args: argparse.Namespace) -> int:
         if not path.exists() or text(path) != written:
             with output(str(path)) as file:
                 file.write(written)
-    print(
-        json.dumps({"instances": list(calls), "complete": True}) if args.json else "\n".join(calls)
-    )
+    if args.json:
+        print(formats.line({"instances": list(calls)}), end="")
+    else:
+        print("\n".join(calls))
     return DONE

@@ -7,7 +7,6 @@ reason after the other, in several orders, of which the smallest answer is kept.
 """
 
 import argparse
-import json
 import random
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
@@ -17,7 +16,7 @@ from typing import Any
 
 import clingo
 
-from topomap import statements
+from topomap import formats, statements
 from topomap.commands import STOPS, exit_status
 from topomap.experience import DState, Experience, read
 from topomap.files import output
@@ -408,7 +407,7 @@ def explain(args: argparse.Namespace) -> int:
             except STOPS as stop:
                 fault = str(stop) or MEMORY
         if args.json:
-            out.write(_json(args, experience, statement, answer, fault) + "\n")
+            out.write(_json(args, experience, statement, answer, fault))
         else:
             out.writelines(f"{line}\n" for line in _lines(experience, statement, answer, fault))
     return exit_status(fault, answer.verdict != "open")
@@ -461,7 +460,8 @@ def _where(experience: Experience, answer: Answer) -> str:
 def _sum(answer: Answer) -> str:
     number = len(answer.reasons)
     if not answer.minimal:
-        return f"{number} reasons suffice, not minimal yet" if number else "no reasons found yet"
+        enough = f"{number} reason{'s' * (number != 1)}: enough, but some may be spared"
+        return enough if number else "the reasons are not found yet"
     if not number:
         return "it is so whatever the map: no rule is needed"
     if number == 1:
@@ -496,7 +496,7 @@ def _json(
         for reason in answer.reasons
     ]
     maps = answer.maps if verdict in ("open", "map") else {}
-    return json.dumps(
+    return formats.line(
         {
             "instance": args.instance,
             "statement": statement and statement.text,
@@ -506,10 +506,9 @@ def _json(
             "verdict": verdict,
             "horizon": answer.horizon,
             "reasons": reasons,
-            "minimal": answer.minimal,
+            "minimal": answer.minimal or None,
             "witness": steps_json(maps.get(True, ())),
             "counter": steps_json(maps.get(False, ())),
-            "complete": fault is None,
-            "fault": fault,
-        }
+        },
+        fault,
     )

@@ -21,6 +21,7 @@ from topomap.options import LONGEST_WALK
 from topomap.solver import MEMORY, Stopped, Watch
 from topomap.topology import Gateway, Place, TopologicalMap
 
+LIMITS = ("steps", "effort", "maps")  # why a plan may not be the best one, but for lack of time
 MOST_CLASSES = 60  # that are told apart at once
 MOST_STATES = 150_000  # of all the maps together
 MOST_WORK = 400_000  # moves of the search for the length, and of that for pairs

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import IO, Any
 
-from topomap import bisimulation, check, files, maps, scenes, solver, words
+from topomap import bisimulation, check, files, formats, maps, scenes, solver, words
 from topomap.bisimulation import Chart, Pair
 from topomap.commands import exit_status
 from topomap.errors import NO, InputError, printable, say
@@ -28,7 +28,7 @@ KINDS = {
 }  # what --among may say, and the parts that such maps have; of optimal ones see scenes.best
 MOST_GROUPS, MOST_PAIRS, LONGEST = 6, 12, 24  # that are told in words
 FAULTS = {
-    "steps": "no walk of at most {steps} steps does better",
+    "steps": "no walk of at most {steps} steps does better, a longer one may",
     "effort": "longer walks may do better",
     "maps": "not all of the maps were looked at when the walk was chosen",
 }
@@ -56,9 +56,10 @@ def explore(args: argparse.Namespace) -> int:
     ):
         among, fault = _among(args, whole, experience, watch)
         if not among:
-            say(f"{args.instance}: {fault or 'no such map is consistent with it'}")
+            none = f"no map found yet; partial: {fault}" if fault else "no such map is consistent"
+            say(f"{args.instance}: {none}{'' if fault else ' with it'}")
             if args.json:
-                out.write(json.dumps({"maps": [], "complete": not fault, "fault": fault}) + "\n")
+                out.write(formats.line({"instance": args.instance, "maps": []}, fault))
             return exit_status(fault, False)
         if args.facts:
             out.write(_facts(experience, among) + "carried.\n" * args.marker)
@@ -66,16 +67,18 @@ def explore(args: argparse.Namespace) -> int:
         standings = [standing(experience, one.at) for one in among]
         watch.title("the next walk")
         made = plan(experience.slots, standings, watch, marker=args.marker, steps=args.steps)
+        cut = bool(fault)
+        every = not cut and all(name in KINDS for name in args.among or ["optimal"])
         fault = fault or made.fault
         if args.proof:
             with files.output(args.proof) as file:
-                json.dump(_proof(args, experience, among, made, fault), file)
-                file.write("\n")
+                file.write(formats.line(_proof(args, experience, among, made), fault))
         if args.json:
-            json.dump(_json(args, experience, among, made, fault), out)
-            out.write("\n")
+            out.write(formats.line(_json(args, experience, among, made, every), fault))
         else:
-            _write(out, args, experience, among, made, fault)
+            found = " found so far" * cut
+            out.write(f"{words.number(len(among), 'map')}{found} ({_kinds(among)})\n")
+            _write(out, args, experience, among, made, every, fault)
     return exit_status(fault, made.kind != "bisimilar")
 
 
@@ -116,19 +119,18 @@ def _of_file(path: str, whole: Experience, experience: Experience, watch: Watch)
     for document in documents:
         for number, entry in enumerate(document.maps, 1):
             watch.found += 1
-            yield _hypothesis(f"{document.where}: map {number}", entry["at"], whole, experience)
+            where = f"{document.where}: map {number}"
+            yield hypothesis(where, entry["at"], whole, experience)
 
 
-def _hypothesis(where: str, at: Any, whole: Experience, experience: Experience) -> At:
-    """The dstate after each step, if they make a hypothesis of the experience. Raises
-    InputError, one line, where they do not."""
-    steps = sorted((step, place, slot) for step, place, slot in at)
-    if len(steps) - 1 not in (whole.steps, experience.steps):
-        raise InputError(f"{where}: {len(steps) - 1} steps, the instance has {experience.steps}")
-    if wrong := check.by_definition(whole, steps):
-        rule, step = min(wrong, key=lambda violation: violation[::-1])
-        raise InputError(f"{where}: step {step}: it breaks the rule {rule} of check.lp")
-    return tuple((place, slot) for _, place, slot in steps[: experience.steps + 1])
+def hypothesis(
+    where: str, at: Any, whole: Experience, experience: Experience, demands: Sequence[str] = ()
+) -> At:
+    """The dstate after each step, if they make a hypothesis of the experience, or of the whole of
+    which it is the beginning. Raises InputError, one line, where they do not."""
+    if len(at) - 1 not in (whole.steps, experience.steps):
+        raise InputError(f"{where}: {len(at) - 1} steps, the instance has {experience.steps}")
+    return maps.hypothesis(where, at, whole, demands)[: experience.steps + 1]
 
 
 def _facts(experience: Experience, among: Sequence[Asked]) -> str:
@@ -146,15 +148,16 @@ def _json(
     experience: Experience,
     among: Sequence[Asked],
     made: Plan,
-    fault: str | None,
+    every: bool,
 ) -> dict[str, Any]:
-    """The answer as JSON; maps are numbered from 1."""
+    """The answer as JSON; maps are numbered from 1. ``every``: there are no others of the kinds
+    that are asked about."""
     return {
         "instance": args.instance,
         "slots": experience.slots,
         "maps": [{"at": steps_json(one.at), "of": one.of} for one in among],
         "marker": args.marker,
-        "kind": made.kind,
+        "kind": _kind(made, every),
         "turns": made.turns,
         "drop": made.drop,
         "left": made.left,
@@ -163,16 +166,21 @@ def _json(
         "classes": [[number + 1 for number in same] for same in made.classes],
         "untold": [
             {
-                "maps": [pair.one + 1, pair.other + 1],
+                "map_numbers": [pair.one + 1, pair.other + 1],
                 "why": pair.why,
                 "open": pair.open,
                 "related": pair.related,
             }
             for pair in made.untold
         ],
-        "complete": fault is None,
-        "fault": fault,
     }
+
+
+def _kind(made: Plan, every: bool) -> str | None:
+    """What the walk is for, or why there is none; None where that is open."""
+    if made.kind == "settled":
+        return made.kind if every else None
+    return made.kind if made.turns or made.kind == "bisimilar" else None
 
 
 def _seen(one: Prediction | None) -> dict[str, Any] | None:
@@ -187,17 +195,13 @@ def _write(
     experience: Experience,
     among: Sequence[Asked],
     made: Plan,
+    every: bool,
     fault: str | None,
 ) -> None:
-    """The answer in words."""
-    kinds: dict[str, int] = {}
-    for one in among:
-        kinds[one.of] = kinds.get(one.of, 0) + 1
-    of = ", ".join(f"{number:,} {printable(kind)}" for kind, number in kinds.items())
-    out.write(f"{words.number(len(among), 'map')} ({of})\n")
+    """The answer in words; ``every`` as above."""
     if made.turns:
         _write_walk(out, experience, made)
-    out.write(f"{_verdict(among, made)}\n")
+    out.write(f"{_verdict(among, made, every)}\n")
     for pair in made.untold[:MOST_PAIRS]:
         out.write(f"maps {pair.one + 1} and {pair.other + 1}: {_why(pair)}\n")
     if len(made.untold) > MOST_PAIRS:
@@ -205,6 +209,14 @@ def _write(
     if fault:
         why = FAULTS.get(fault, "").format(steps=args.steps)
         out.write(f"partial: {fault}{f'; {why}' * bool(why)}\n")
+
+
+def _kinds(among: Sequence[Asked]) -> str:
+    """How many maps there are of each kind."""
+    kinds: dict[str, int] = {}
+    for one in among:
+        kinds[one.of] = kinds.get(one.of, 0) + 1
+    return ", ".join(f"{number:,} {printable(kind)}" for kind, number in kinds.items())
 
 
 def _write_walk(out: IO[str], experience: Experience, made: Plan) -> None:
@@ -247,20 +259,23 @@ def _cell(one: Prediction | None) -> str:
     return ", ".join([words.short(seen, LONGEST), *signs, *["marker"] * one.marker])
 
 
-def _verdict(among: Sequence[Asked], made: Plan) -> str:
+def _verdict(among: Sequence[Asked], made: Plan, every: bool) -> str:
     """What the walk is good for."""
     many = len(among)
     if made.kind == "settled":
-        return "settled: the map is closed, and the only one"
+        if every:
+            return "settled: the map is closed, and the only one"
+        return "the map is closed; whether it is the real one is open: others were not looked at"
     if made.kind == "bisimilar":
-        return "no walk tells the maps apart, for ever, and no gateway is pending"
+        which = "the maps" if every else "these maps"
+        return f"no walk tells {which} apart, for ever, and no gateway is pending"
     if made.kind == "apart":
         if not made.turns:
-            return "no walk was found that tells the maps apart"
+            return "a walk that tells the maps apart is not found yet"
         best = "; no walk leaves fewer, none as few sooner" if made.proved else ""
         return f"left in the worst case: {made.left:,} of {many:,} maps{best}"
     if not made.turns:
-        return "no walk was found to a pending gateway"
+        return "a walk to a pending gateway is not found yet"
     off = sum(row[-1] is None for row in made.predictions)
     why = f"in {off:,} of {many:,} maps" if many > 1 else "in the map"
     told = many > 1 and made.proved
@@ -289,7 +304,6 @@ def _proof(
     experience: Experience,
     among: Sequence[Asked],
     made: Plan,
-    fault: str | None,
 ) -> dict[str, Any]:
     """The proofs, to be checked by ``--check``."""
     return {
@@ -298,11 +312,14 @@ def _proof(
         "marker": args.marker,
         "maps": [{"at": steps_json(one.at)} for one in among],
         "proofs": [
-            {"maps": [pair.one + 1, pair.other + 1], "why": pair.why, "related": pair.related}
+            {
+                "map_numbers": [pair.one + 1, pair.other + 1],
+                "why": pair.why,
+                "related": pair.related,
+            }
             for pair in made.untold
             if pair.related
         ],
-        "complete": fault is None,
     }
 
 
@@ -311,6 +328,7 @@ def _check(args: argparse.Namespace, experience: Experience) -> int:
     path = args.check
     try:
         data = json.loads(files.text(path, maps.MOST_BYTES))
+        formats.demand(path, data)
         marker, proofs, steps = data["marker"], data["proofs"], data["horizon"]
         kinds = isinstance(marker, bool), isinstance(proofs, list), type(steps) is int
         if not all(kinds) or not 0 <= steps <= experience.steps:
@@ -324,7 +342,7 @@ def _check(args: argparse.Namespace, experience: Experience) -> int:
     put = max(experience.drops, default=-1)
     lying = put >= max([0, *experience.picks])  # taking the marker up comes before putting it down
     for number, entry in enumerate(document.maps, 1):
-        at = _hypothesis(f"{path}: map {number}", entry["at"], experience, experience)
+        at = hypothesis(f"{path}: map {number}", entry["at"], experience, experience)
         grown = check.Grown(experience, dict(enumerate(at)), experience.steps)
         landmarks = {place: experience.landmarks[place] for place in grown.stars}
         rest = landmarks, at[put][0] if lying else None
@@ -339,7 +357,7 @@ def _check(args: argparse.Namespace, experience: Experience) -> int:
     with files.output(args.output) as out:
         if args.json:
             answer = {"instance": args.instance, "proofs": len(proofs), "wrong": wrong}
-            out.write(json.dumps(answer | {"complete": True, "fault": None}) + "\n")
+            out.write(formats.line(answer))
         else:
             out.writelines(f"{line}\n" for line in wrong)
             out.write(f"{words.number(len(proofs), 'proof')}, {len(wrong) or 'none'} wrong{of}\n")
@@ -359,7 +377,7 @@ def _read(where: str, proof: Any, charts: Sequence[Chart]) -> tuple[Chart, Chart
         return number(place), number(slot)
 
     try:
-        first, second = (number(which) for which in proof["maps"])
+        first, second = (number(which) for which in proof["map_numbers"])
         if not 1 <= first < second <= len(charts):
             raise ValueError
         if proof["why"] not in ("bisimilar", "pending"):

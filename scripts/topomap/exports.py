@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import clingo
 
-from topomap import maps, nx
+from topomap import formats, maps, nx
 from topomap.errors import InputError, printable
 from topomap.files import data
 from topomap.network import read_graphml
@@ -76,7 +76,7 @@ def graphml(scene: Scene) -> str:
 
 def node_link(scene: Scene) -> str:
     """The map as node-link JSON."""
-    return json.dumps(nx.node_link_data(graph_of(scene), edges="edges")) + "\n"
+    return json.dumps(formats.headed(nx.node_link_data(graph_of(scene), edges="edges"))) + "\n"
 
 
 def read(file: str) -> str:
@@ -87,8 +87,10 @@ def read(file: str) -> str:
         graph = read_graphml(file, content, int)
     else:
         try:
-            graph = nx.node_link_graph(json.loads(content), edges="edges")
-        except MemoryError:
+            told = json.loads(content)
+            formats.demand(file, told)
+            graph = nx.node_link_graph(told, edges="edges")
+        except (MemoryError, InputError):
             raise
         except Exception:  # networkx checks nothing
             raise InputError(f"{file}: not a graph in JSON that networkx reads") from None
@@ -132,8 +134,8 @@ def _read(file: str, graph: "nx.Graph[Any]") -> str:
         raise InputError(f"{file}: gateways, landmarks, steps or genus do not fit the links and at")
     claims["horizon"] = len(scene.at) - 1
     # There may be more maps of that kind than this one.
-    tail = {"kind": kind, "count": 1, "complete": False, "fault": "a single map, imported"}
-    return json.dumps({**claims, "maps": [map_json(scene.world, scene.at)], **tail}) + "\n"
+    made = {**claims, "maps": [map_json(scene.world, scene.at)], "kind": kind, "count": 1}
+    return formats.line(made, "a single map, imported")
 
 
 def _told(graph: "nx.Graph[Any]") -> str:

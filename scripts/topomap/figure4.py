@@ -19,7 +19,7 @@ COLUMNS: list[dict[str, Any]] = json.loads(
 )["columns"]
 WORDS = {
     "nodes": "Search-tree nodes built",
-    "maps": "Maps built",
+    "maps_built": "Maps built",
     "final": "Final maps (all)",
     "closed": "Final maps (closed: no path untravelled)",
     "closed_text": "  (closed: no gateway pending)",

@@ -19,7 +19,7 @@ from typing import Any
 
 import clingo
 
-from topomap import words
+from topomap import formats, words
 from topomap.errors import DONE, NO, PARTIAL, InputError, of_file, say
 from topomap.experience import (
     MARKER,
@@ -31,7 +31,7 @@ from topomap.experience import (
     misfit,
     slots_fault,
 )
-from topomap.explore import plan, standing
+from topomap.explore import LIMITS, plan, standing
 from topomap.online import Certain, Follower, Status
 from topomap.options import LARGEST
 from topomap.report import map_line, steps_json
@@ -406,10 +406,7 @@ class Following:
             before = self.certain[-1] if self.certain else Certain()
             following, fault = None, status.fault
             if status.best and not fault:
-                try:
-                    following = self._plan(status, watch)
-                except Stopped as stop:
-                    fault = str(stop)
+                following, fault = self._plan(status, watch)
         if fault == INTERRUPT:
             raise Stopped(INTERRUPT)
         self.certain += [before] * (status.step - len(self.certain))
@@ -419,51 +416,55 @@ class Following:
         if self.status == DONE and status.none_since is not None:
             self.status = NO
         if self.args.json:
-            answer = _json(status, new, following, fault)
+            answer = _json(status, new, following)
             answer["seconds"] = round(time.monotonic() - begun, 4)
-            print(json.dumps(answer), flush=True)
+            print(formats.line(answer, fault), end="", flush=True)
         else:
             text = _text(self.follower, status, new, following, fault, time.monotonic() - begun)
             print(text, flush=True)
 
-    def _plan(self, status: Status, watch: Watch) -> dict[str, Any]:
-        """The next best action: what explore says of the best maps."""
+    def _plan(self, status: Status, watch: Watch) -> tuple[dict[str, Any] | None, str | None]:
+        """The next best action: what explore says of the best maps; and why the planning was cut,
+        if it was. None if no walk was found, and it is open whether there is one."""
         assert self.follower is not None
         experience = self.follower.experience
         among = [standing(experience, at) for at in status.best]
         made = plan(experience.slots, among, watch, marker=self.args.marker)
+        fault = None if made.fault in LIMITS else made.fault
+        if not made.turns and made.kind not in ("settled", "bisimilar"):
+            return None, fault
         return {
             "kind": made.kind,
             "turns": list(made.turns),
             "drop": made.drop,
             "left": made.left,
             "proved": made.proved,
-        }
+        }, fault
 
 
-def _json(
-    status: Status, new: Certain, following: dict[str, Any] | None, fault: str | None
-) -> dict[str, Any]:
+def _json(status: Status, new: Certain, following: dict[str, Any] | None) -> dict[str, Any]:
+    """What is known after a step; None where it is open."""
+    settled = status.all_best or bool(status.best)
     return {
         "step": status.step,
         "hypotheses": status.hypotheses,
-        "exact": status.exact,
+        "exact": status.exact if status.hypotheses is not None else None,
         "none_since": status.none_since,
         "best": {
             "kind": status.kind,
-            "cost": list(status.cost),
-            "count": len(status.best),
-            "all": status.all_best,
+            "cost": list(status.cost) if settled else None,
+            "count": len(status.best) if settled else None,
+            "all": status.all_best if settled else None,
             "maps": [steps_json(at) for at in status.best],
         },
         "certain": {
             "same": sorted(map(list, new.same)),
             "new": sorted(new.new),
             "linked": sorted(map(list, new.linked)),
-        },
+        }
+        if status.certain is not None
+        else None,
         "next": following,
-        "complete": fault is None,
-        "fault": fault,
     }
 
 
@@ -498,13 +499,15 @@ def _text(
         out.append("  no map has consistent boundaries")
     if following is not None:
         seen = follower.experience
-        out.append(f"  next: {_next(following, seen.slots, seen.steps)}")
+        out.append(f"  next: {_next(following, seen.slots, seen.steps, status.all_best)}")
+    elif status.best and not fault:
+        out.append("  next: a walk that tells the best maps apart is not found")
     if fault:
         out.append(f"  partial: {fault}")
     return "\n".join(out)
 
 
-def _next(following: dict[str, Any], slots: int, steps: int) -> str:
+def _next(following: dict[str, Any], slots: int, steps: int, every: bool) -> str:
     told = [words.direction(turn, slots) for turn in following["turns"]]
     if steps == 0 and told:  # it arrived by no gateway, so there is no way back
         told[0] = "by the gateway stood at" if following["turns"][0] == 0 else ""
@@ -519,7 +522,7 @@ def _next(following: dict[str, Any], slots: int, steps: int) -> str:
         "apart": f"turn {walk}: of the best maps it leaves {left} at most",
         "pending": f"turn {walk}: to a pending gateway",
         "settled": "nothing; the only best map is closed",
-        "bisimilar": f"nothing; no walk tells the {left} apart",
+        "bisimilar": f"nothing; no walk tells {'the' if every else 'these'} {left} apart",
     }[following["kind"]]
 
 

@@ -6,36 +6,62 @@ writes; or a list of maps. A map needs only ``at``, ``[[T,P,S], ...]``.
 
 import json
 import re
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any
 
 from clingo import parse_term
 
-from topomap import words
+from topomap import formats, words
 from topomap.check import STEP_RULES, At, Grown, Violation, by_definition, by_rules
 from topomap.errors import InputError
-from topomap.experience import Experience, Misread
+from topomap.experience import DState, Experience, Misread
 from topomap.files import text
 from topomap.options import LARGEST
-from topomap.solver import misreadings
+from topomap.solver import UNPROVED, misreadings
 from topomap.topology import Gateway, TopologicalMap
 from topomap.vocabulary import PARTS, PROPERTIES
 
 MOST_BYTES = 2**32
 LONGER = 10  # times as many dstates as steps: no map of the experience
 _AT = re.compile(r"at\((-?\d+),(-?\d+),(-?\d+)\)", re.ASCII)
-KINDS = ("consistent", "best", "optimal", "best so far", "closed, best-first")
+BEST_FIRST = "closed, best-first"
+KINDS = ("consistent", "best", "optimal", "best so far", BEST_FIRST, UNPROVED)
 BEST = ("optimal", "best so far")  # what --optimal gives
 
 
 @dataclass(frozen=True)
 class Document:
-    """Maps, and what is said of all of them; ``where`` names it in messages."""
+    """Maps, and what is said of all of them; ``where`` names it in messages. Of clingo's answers
+    (``by_clingo``) those numbered in ``worse``, from 0, cost more than others."""
 
     where: str
     maps: list[dict[str, Any]]
     claims: dict[str, Any] = field(default_factory=dict)
+    by_clingo: bool = False
+    worse: frozenset[int] = frozenset()
+
+    @property
+    def kind(self) -> str:
+        """What the maps are said to be, if anything is."""
+        kind = str(self.claims.get("kind") or "")
+        unproved = self.claims.get("proved") is False and kind != BEST_FIRST
+        return UNPROVED if unproved else kind
+
+    @property
+    def whole(self) -> bool:
+        """Whether the maps are said to be all of their kind, and may be: none was taken away,
+        and the search was no best-first one, which ends at the first map that it finds."""
+        if self.kind in (BEST_FIRST, UNPROVED):
+            return False
+        count = self.claims.get("count", len(self.maps))
+        return bool(self.claims.get("complete", False)) and count == len(self.maps)
+
+    @property
+    def best(self) -> list[tuple[int, dict[str, Any]]]:
+        """The maps, by number from 1, but for those that cost more than others."""
+        return [one for one in enumerate(self.maps, 1) if one[0] - 1 not in self.worse]
 
     def demands(self) -> Iterator[str]:
         """What the maps are said to have, as terms of ``check.lp``."""
@@ -46,9 +72,9 @@ class Document:
                 yield part
         if self.claims.get("bound") is not None:
             yield f"bound({self.claims['bound']})"
-        if self.claims.get("kind") in BEST:
+        if self.claims.get("optimal"):
             yield "boundary"
-        if self.claims.get("kind") in ("optimal", "closed, best-first"):
+        if self.claims.get("kind") in ("optimal", BEST_FIRST):
             yield "closed"
 
 
@@ -66,6 +92,7 @@ def parse(content: str, path: str) -> list[Document]:
         raise InputError(
             f"{path}: not a JSON text, as topomap solve --json and clingo --outf=2 write it"
         ) from None
+    formats.demand(path, data)
     if isinstance(data, dict) and "Call" in data:
         return [_of_clingo(path, data)]
     documents = data["results"] if isinstance(data, dict) and "results" in data else [data]
@@ -86,7 +113,8 @@ def document(where: str, data: Any) -> Document:
         data = {"maps": [data]}
     if not isinstance(data, dict) or not isinstance(data.get("maps"), list):
         raise InputError(f"{where}: no maps in it")
-    claims = {key: value for key, value in data.items() if key != "maps"}
+    formats.demand(where, data)
+    claims = {key: value for key, value in data.items() if key not in ("format", "maps")}
     for key, value in claims.items():
         if key not in CLAIMS:
             raise InputError(f"{where}: {key}: no such key")
@@ -94,8 +122,11 @@ def document(where: str, data: Any) -> Document:
             raise InputError(f"{where}: {key}: not what topomap solve --json writes there")
     if "fault" in claims and claims.get("complete") is not (claims["fault"] is None):
         raise InputError(f"{where}: complete and fault contradict each other")
-    if "kind" in claims and claims.get("optimal", False) is not (claims["kind"] in BEST):
+    kind, optimal = claims.get("kind"), claims.get("optimal", False)
+    if (kind in BEST and not optimal) or (optimal and kind not in (None, *BEST, UNPROVED)):
         raise InputError(f"{where}: optimal and kind contradict each other")
+    if kind == UNPROVED and claims.get("proved"):
+        raise InputError(f"{where}: proved and kind contradict each other")
     if not data["maps"] and claims.get("count"):
         raise InputError(f"{where}: count is {claims['count']}, there are no maps")
     for number, entry in enumerate(data["maps"], 1):
@@ -149,8 +180,39 @@ def _is_at(at: object) -> bool:
     )
 
 
+def of_instance(documents: list[Document], instance: str) -> list[Document]:
+    """Those of an instance, by the name of its file, where there are several."""
+    if len(documents) == 1:
+        return documents
+    name = Path(instance).name
+    return [one for one in documents if Path(str(one.claims.get("instance"))).name == name]
+
+
+def hypothesis(
+    where: str,
+    at: Any,
+    experience: Experience,
+    demands: Sequence[str] = (),
+    rules: Collection[str] | None = None,
+) -> tuple[DState, ...]:
+    """The dstate after each step of ``at``, ``[[T,P,S], ...]``, if it breaks none of the rules of
+    ``check.lp`` (of all, unless told). Raises InputError, one line, where it does."""
+    steps = sorted((step, place, slot) for step, place, slot in at)
+    wrong = [
+        (step, rule)
+        for rule, step in by_definition(experience, steps, demands)
+        if rules is None or rule in rules
+    ]
+    if wrong:
+        step, rule = min(wrong)
+        raise InputError(f"{where}: step {step}: it breaks the rule {rule} of check.lp")
+    return tuple((place, slot) for _, place, slot in steps)
+
+
 def _of_clingo(path: str, data: dict[str, Any]) -> Document:
     maps = []
+    costs: list[list[int]] = []
+    again = False
     seen = set()
     try:
         for witness in (w for call in data["Call"] for w in call.get("Witnesses", [])):
@@ -160,15 +222,37 @@ def _of_clingo(path: str, data: dict[str, Any]) -> Document:
                 raise ValueError
             wrong = [parse_term(atom) for atom in witness["Value"] if atom[:8] == "misread("]
             misread = misreadings(atom.arguments for atom in wrong)
-            # Under optimisation clingo gives the first of the best maps twice.
-            if "Costs" not in witness or (at, misread) not in seen:
+            # Under optimisation clingo gives the first of the best maps twice, if asked for all.
+            if "Costs" in witness and (at, misread) in seen:
+                again = True
+            else:
                 kinds = ("gateway" if isinstance(what, int) else "landmark" for _, what in misread)
                 said = [{"step": t, k: what} for k, (t, what) in zip(kinds, misread, strict=True)]
                 maps.append({"at": at, **({"misread": said} if said else {})})
+                costs.append([int(cost) for cost in witness.get("Costs", [])])
             seen.add((at, misread))
     except (LookupError, TypeError, ValueError, AttributeError, RuntimeError):
         raise InputError(f"{path}: not what clingo --outf=2 writes") from None
-    return Document(path, maps)
+    least = min(costs, default=[])
+    worse = frozenset(number for number, cost in enumerate(costs) if cost != least)
+    fault = _lacking(data, len(maps) - len(worse), again)
+    return Document(path, maps, formats.ended(fault), True, worse)
+
+
+def _lacking(data: dict[str, Any], many: int, again: bool) -> str | None:
+    """Why so many answers of clingo may not be all that there are, if so; ``again``: one of the
+    best ones was given twice."""
+    models = data.get("Models")
+    models = models if isinstance(models, dict) else {}
+    if models.get("More") != "no" or {"Brave", "Cautious"} & models.keys():
+        return "clingo was not asked for all, or did not end"
+    optimal = models.get("Optimal")
+    if optimal is None:
+        return None if models.get("Number") == many else "clingo did not print all"
+    # Without --opt-mode=optN it ends at the first best answer, and tells of one in the same words.
+    if models.get("Optimum") != "yes" or optimal != many or not (again or optimal > 1):
+        return "clingo was not asked for all of the best"
+    return None
 
 
 @dataclass(frozen=True)
@@ -210,7 +294,7 @@ def verdicts(
             definition: set[Violation] = set()
             found = []
             try:
-                misread = _misread(seen, entry.get("misread", []))
+                misread = misread_of(seen, entry)
                 experience = seen.corrected(misread)
                 found = list(_mistaken(experience, misread, len(at), min(bounds, default=None)))
             except (LookupError, TypeError, ValueError):
@@ -238,8 +322,10 @@ def verdicts(
             yield Verdict(f"{document.where}: map {number}", violations, found, short)
 
 
-def _misread(seen: Experience, said: Any) -> frozenset[Misread]:
-    """What a map says was misread. Raises an error where it cannot be."""
+def misread_of(seen: Experience, entry: dict[str, Any]) -> frozenset[Misread]:
+    """What a map says was misread. Raises a LookupError, TypeError or ValueError where it cannot
+    be."""
+    said = entry.get("misread", [])
     signs = frozenset[str]().union(*seen.landmarks)
     found: set[Misread] = set()
     for one in _list(said):
@@ -311,7 +397,7 @@ def _noise(entry: dict[str, Any], claims: dict[str, Any]) -> list[int]:
 def _cost(grown: Grown, claims: dict[str, Any]) -> list[int]:
     """What was minimised, most important first."""
     parts = claims.get("parts", ())
-    minimal = "minimal" in parts or claims.get("kind") in (*BEST, "closed, best-first")
+    minimal = "minimal" in parts or claims.get("optimal") or claims.get("kind") == BEST_FIRST
     genus = [grown.genus()] if "genus" in parts else []
     return genus + ([len(grown.paths()), len(grown.stars)] if minimal else [])
 

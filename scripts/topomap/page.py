@@ -14,11 +14,12 @@ from typing import Any
 
 import clingo
 
-from topomap import __version__, experience, scenes, solver, svg, words
+from topomap import __version__, experience, maps, scenes, solver, svg, words
 from topomap.agreement import Agreement
 from topomap.commands import exit_status
 from topomap.errors import InputError, printable, say
 from topomap.experience import Experience
+from topomap.exploring import hypothesis
 from topomap.extras import need
 from topomap.files import output
 from topomap.options import LARGEST
@@ -45,13 +46,14 @@ def report(args: argparse.Namespace) -> int:
         raise InputError("topomap report: an instance is named twice")
     parts = frozenset(part for part in PRUNING if getattr(args, part))
     query = Query(parts, args.bound, args.horizon)
+    given = None if args.maps_from is None else _given(args, seen, query)
     with output(args.output) as out, Watch(args.timeout) as watch:
         end = time.monotonic() + args.timeout
         made = []
         for number, (path, one) in enumerate(seen):
             share = (end - time.monotonic()) / (len(seen) - number)
             cut = one.cut(LARGEST if query.horizon is None else query.horizon)
-            about = Exploration(path, cut, replace(query, horizon=None), args.maps, watch)
+            about = Exploration(path, cut, replace(query, horizon=None), args.maps, watch, given)
             about.look(max(0.0, share))
             made.append(about)
         out.write(_page(args, made))
@@ -63,14 +65,55 @@ def report(args: argparse.Namespace) -> int:
     return exit_status(fault, all(about.best for about in made))
 
 
-class Exploration:
-    """What the page tells of an exploration; ``faults`` are what it lacks, and why."""
+def _given(
+    args: argparse.Namespace, seen: list[tuple[str, Experience]], query: Query
+) -> list[Scene]:
+    """The maps of a file, for the page to tell of. Raises InputError, one line, where they are
+    none of the hypotheses that it counts."""
+    if len(seen) > 1:
+        raise InputError("topomap report: --maps-from goes with one instance")
+    ((path, whole),) = seen
+    cut = whole.cut(LARGEST if query.horizon is None else query.horizon)
+    demands = sorted(query.parts)
+    demands += [] if query.places is None else [f"bound({query.places})"]
+    documents = maps.of_instance(maps.read(args.maps_from), path)
+    made: list[Scene] = []
+    for document in documents:
+        many = len(document.best)
+        for number, (place, entry) in enumerate(document.best, 1):
+            where = f"{document.where}: map {place}"
+            if entry.get("misread"):
+                raise InputError(f"{where}: it disbelieves what was seen; the page is of all of it")
+            at = hypothesis(where, entry["at"], whole, cut, demands)
+            rest = path, number, many, document.kind
+            made.append(Scene(cut.map_of(at), at, *rest, whole=document.whole))
+    if len({scene.at for scene in made}) < len(made):
+        raise InputError(f"{args.maps_from}: a map is there twice")
+    if not made:
+        raise InputError(f"{args.maps_from}: no maps of {path} in it")
+    return made
 
-    def __init__(self, name: str, seen: Experience, query: Query, most: int, watch: Watch):
+
+class Exploration:
+    """What the page tells of an exploration: of its best maps, or of those that are ``given``;
+    ``faults`` are what it lacks, and why; ``whole`` tells whether the maps are all of their
+    kind."""
+
+    def __init__(
+        self,
+        name: str,
+        seen: Experience,
+        query: Query,
+        most: int,
+        watch: Watch,
+        given: list[Scene] | None = None,
+    ):
         self.name, self.seen, self.query, self.watch = name, seen, query, watch
         self.most = most  # maps to be drawn
         self.faults: list[str] = []
-        self.best: list[Scene] = []
+        self.given = given is not None
+        self.best: list[Scene] = given or []
+        self.whole = all(scene.whole for scene in self.best)
         self.steps: list[Step] = []
         self.shapes: dict[Cube, Drawing] = {}  # small ones, but for the best maps
         self.counts: dict[str, list[int | None]] = {
@@ -81,9 +124,11 @@ class Exploration:
         """Find out what can be found in that time: no part of the work takes it all."""
         now = time.monotonic()
         self.watch.deadline = now + seconds / 3
-        self.best, fault = scenes.best(self.seen, self.name, self.query, self.watch)
-        if fault:
-            self.faults.append(f"the best maps: {fault}")
+        if not self.given:
+            self.best, fault = scenes.best(self.seen, self.name, self.query, self.watch)
+            self.whole = not fault
+            if fault:
+                self.faults.append(f"the best maps: {fault}")
         self.watch.deadline = now + seconds / 2
         ats = [tuple(scene.at) for scene in self.best]
         self.steps, fault = replay(self.seen, self.query, ats, self.watch)
@@ -223,6 +268,8 @@ def _options(args: argparse.Namespace, without: str = "") -> list[str]:
 
 def _call(args: argparse.Namespace) -> str:
     limits = ["--maps", str(args.maps), "--timeout", f"{args.timeout:g}"]
+    if args.maps_from is not None:
+        limits += ["--maps-from", args.maps_from]
     call = ["topomap", "report", *args.instance, *_options(args), *limits, "-o", "report.html"]
     return shlex.join(call)
 
@@ -250,10 +297,12 @@ def _about(args: argparse.Namespace, number: int, about: Exploration) -> dict[st
     stem = printable(Path(about.name).stem)
     name = f"Hypotheses after each step of {stem}, on a logarithmic scale"
     agreed = Agreement([scene.at for scene in about.best], seen)
-    maps = [
+    drawn = [
         _map(scene, about.shapes.get(tuple(scene.at)), agreed) for scene in about.best[: args.maps]
     ]
     file = about.name
+    solve = shlex.join(["topomap", "solve", file, "--optimal", *_options(args)])
+    solved = [] if about.given else [solve]
     return {
         "id": f"i{number}",
         "name": file,
@@ -278,15 +327,18 @@ def _about(args: argparse.Namespace, number: int, about: Exploration) -> dict[st
         "refused": [
             (step, about.steps[step - 1].alive, about.steps[step]) for step in range(1, last + 1)
         ],
-        "maps": maps,
+        "maps": drawn,
         "dead": next((step for step in range(1, last + 1) if about.steps[step].alive == 0), None),
         "found": len(about.best),
         "kind": about.best[0].kind if about.best else "",
+        "whole": about.whole,
+        "given": about.given,
+        "which": f"the maps{' given' if about.given else ' found' * (not about.whole)}",
         "agreed": agreed,
         "commands": [
             shlex.join(["topomap", "count", file, *_options(args, "planar")]),
             shlex.join(["topomap", "count", file, "--planar", *_options(args, "planar")]),
-            shlex.join(["topomap", "solve", file, "--optimal", *_options(args)]),
+            *solved,
         ],
     }
 
@@ -385,7 +437,9 @@ def _map(scene: Scene, drawn: Drawing | None, agreed: Agreement) -> dict[str, An
         links.append((out, end, along, agreed.having(out, end)))
     apart = [(out, end) for out, end, _, having in links if having < scene.many]
     apart += [(end, out) for out, end in apart]
-    name = f"Map {number} of {scene.many}, {scene.kind}: {_sizes(scene)}"
+    found = " found" * (not scene.whole)
+    name = f"Map {number} of {scene.many}{found}{f', {scene.kind}' * bool(scene.kind)}: "
+    name += _sizes(scene)
     name += f", the agent at place {scene.at[-1][0]}, gateway {scene.at[-1][1]}"
     picture = ""
     if drawn:

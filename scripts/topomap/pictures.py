@@ -95,15 +95,17 @@ def _scene(args: argparse.Namespace) -> tuple[Scene | None, int]:
     """The map that is asked for, and the exit status: partial, if it may not be the best."""
     parts = frozenset(part for part in PARTS if getattr(args, part, False))
     with Watch(args.timeout) as watch:
-        found, fault = scenes.read(args.file, Query(parts, args.bound, args.horizon), watch)
+        query = Query(parts, args.bound, args.horizon)
+        found, fault = scenes.read(args.file, query, watch, args.given)
     number = args.map or 1
+    source = args.file if args.given is None else args.given
     if fault:
         say(f"{args.file}: partial: {fault}")
     elif not found:
         say(f"{args.file}: no map is consistent with it")
     elif number > len(found):
         many = words.number(len(found), "map")
-        raise InputError(f"{args.file}: it has {many}, there is no map {number}")
+        raise InputError(f"{source}: it has {many}, there is no map {number}")
     return (found[number - 1] if number <= len(found) else None), exit_status(fault, bool(found))
 
 

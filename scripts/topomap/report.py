@@ -4,10 +4,10 @@ import json
 from collections.abc import Sequence
 from typing import IO, Any
 
-from topomap import words
+from topomap import formats, words
 from topomap.experience import Experience, Misread
 from topomap.query import Query
-from topomap.solver import Found
+from topomap.solver import UNPROVED, Found
 from topomap.topology import Gateway, TopologicalMap
 
 
@@ -89,7 +89,7 @@ class Report:
             }
             if query.noise is not None:
                 head["noise"] = query.noise
-            out.write(json.dumps(head)[:-1] + ', "maps": [')
+            out.write(json.dumps(formats.headed(head))[:-1] + ', "maps": [')
 
     def add(self, found: Found) -> None:
         """Write one map."""
@@ -112,24 +112,30 @@ class Report:
             self.out.write(f"map {self.count}{mark}: {map_line(corrected, found)}\n")
 
     def end(self, fault: str | None, nodes: int | None = None) -> None:
-        """Write what the maps are, and whether they are all; ``nodes`` were searched."""
+        """Write what the maps are, and whether they are all; ``nodes`` were searched. Where they
+        may not be all, nothing is said of those that were not found."""
         if self.as_json:
-            tail: dict[str, Any] = {"kind": self.last.kind, "count": self.count}
+            kind = self.last.kind if self.count or not fault else None
+            tail: dict[str, Any] = {"kind": kind, "count": self.count}
             if self.last.cost:
                 tail |= {"cost": self.last.cost, "proved": self.last.proved}
             if nodes is not None:
                 tail["nodes"] = nodes
-            tail |= {"complete": fault is None, "fault": fault}
+            tail |= formats.ended(fault)
             self.out.write("\n], " + json.dumps(tail)[1:] + "\n")
             return
-        noun = "map" if self.count == 1 else "maps"
-        line = f"{self.count} {self.last.kind} {noun}"
+        kind = "" if self.last.kind == UNPROVED else f"{self.last.kind} "
+        line = f"{self.count} {kind}map{'s' * (self.count != 1)}{' found' * bool(fault)}"
+        if fault and not self.count:
+            line = "no map found yet"
         if self.last.cost:
             line += f", cost {' '.join(map(str, self.last.cost))}"
         if not self.last.proved:
-            line += ", not proved to be best"
+            line += f", {UNPROVED}"
+        elif fault and self.count:
+            line += ", more may exist"
         if nodes is not None:
             line += f", {nodes:,} nodes searched"
-        if self.truth and not self.real:
-            line += ", the real map is not among them"
+        if self.truth and not self.real and (self.count or not fault):
+            line += f", the real map is not among {'those found so far' if fault else 'them'}"
         self.out.write(line + (f"; partial: {fault}\n" if fault else "\n"))

@@ -8,12 +8,13 @@ from pathlib import PurePath
 from typing import Any
 
 from topomap import maps, nx, solver
+from topomap.check import STEP_RULES
 from topomap.errors import InputError, printable
 from topomap.experience import MOST_SLOTS, Experience, parse
 from topomap.files import text
 from topomap.options import LARGEST
 from topomap.query import Query
-from topomap.solver import MEMORY, Found, Stopped, Watch
+from topomap.solver import MEMORY, UNPROVED, Found, Stopped, Watch
 from topomap.topology import Gateway, TopologicalMap
 from topomap.words import markers, short
 
@@ -25,8 +26,9 @@ class Scene:
     """A map, and the dstate after each step of the route in it, from step 0 (or none).
 
     ``name`` says where it is from; ``number`` of ``many`` such maps, which are all if ``whole``;
-    ``kind`` what they are; ``caption`` is a title instead of these. ``marker`` says where the
-    marker was put down, seen and taken up, if it was.
+    ``kind`` what they are; if it is not known, they are all that were given. ``caption`` is a
+    title instead of these. ``marker`` says where the marker was put down, seen and taken up, if
+    it was.
     """
 
     world: TopologicalMap
@@ -36,16 +38,20 @@ class Scene:
     many: int = 1
     kind: str = ""
     caption: str = ""
-    whole: bool = True
+    whole: bool = False
     marker: str = ""
 
     @property
     def title(self) -> str:
         """What the map is, in two lines; an instance by the stem of its file."""
         world = self.world
-        which = f"map {self.number} of {self.many}{' found' * (not self.whole)}"
-        if self.whole and self.many == 1:
+        which = f"map {self.number} of {self.many}"
+        if not self.whole:
+            which += " found"
+        elif self.many == 1:
             which = "the only map"
+        if self.whole and not self.kind:
+            which += " given"
         genus = world.genus()
         sizes = [
             _number(len(world.stars), "place"),
@@ -75,12 +81,26 @@ def _number(number: int, noun: str) -> str:
     return f"{number} {noun}{'s' * (number != 1)}"
 
 
-def read(path: str, query: Query, watch: Watch) -> tuple[list[Scene], str | None]:
+def read(
+    path: str, query: Query, watch: Watch, given: str | None = None
+) -> tuple[list[Scene], str | None]:
     """The maps of a file, and why they may not be all of them, if so.
 
     Of an instance they are the optimal ones, or the best so far, that have the parts of the
-    query; of a text of ``solve --json`` those in it. Raises InputError, one line.
+    query, or with a file of maps ``given`` those in it; of a text of ``solve --json`` those in it.
+    Raises InputError, one line.
     """
+    if given is not None:
+        if query != Query(frozenset()):
+            raise InputError(f"{given}: the maps are given: parts, bound, horizon are of none")
+        if path == given == "-":
+            raise InputError("-: standard input is the instance or the maps, not both")
+        documents = maps.of_instance(maps.read(given), path)
+        if not documents:
+            raise InputError(f"{given}: no maps of {path} in it")
+        noisy = any("misread" in entry for document in documents for entry in document.maps)
+        seen = parse(text(path), path, noisy)
+        return [scene for one in documents for scene in of_instance(seen, path, one)], None
     content = text(path, maps.MOST_BYTES)
     if content.lstrip()[:1] in ("{", "["):
         if query != Query(frozenset()):
@@ -89,6 +109,34 @@ def read(path: str, query: Query, watch: Watch) -> tuple[list[Scene], str | None
             scene for document in maps.parse(content, path) for scene in of_document(document)
         ], None
     return best(parse(content, path), path, query, watch)
+
+
+def of_instance(seen: Experience, name: str, document: maps.Document) -> list[Scene]:
+    """The maps of a document that tells no more of them than ``at``, as clingo does, or whatever
+    else it tells. Raises InputError, one line, if one is none of this experience."""
+    scenes = []
+    many = len(document.best)
+    for number, (place, entry) in enumerate(document.best, 1):
+        where = f"{document.where}: map {place}"
+        last = len(entry["at"]) - 1
+        if not 0 <= last <= seen.steps:
+            raise InputError(f"{where}: {last} steps, the instance has {seen.steps}")
+        try:
+            corrected = seen.corrected(maps.misread_of(seen, entry)).cut(last)
+        except (LookupError, TypeError, ValueError):
+            raise InputError(f"{where}: misread: not what topomap solve --json writes") from None
+        if left := corrected.misled():
+            fault = "the agent stands at no gateway or leaves by none"
+            raise InputError(f"{where}: step {left[0]}: {fault}")
+        at = maps.hypothesis(where, entry["at"], corrected, rules=STEP_RULES)
+        scenes.append(
+            Scene(
+                *(corrected.map_of(at), at, name, number, many, document.kind),
+                whole=document.whole,
+                marker=markers(corrected, at),
+            )
+        )
+    return scenes
 
 
 def best(
@@ -105,7 +153,7 @@ def best(
     except (Stopped, MemoryError) as stop:
         fault = str(stop) or MEMORY
     found.sort(key=lambda one: one.at)
-    kinds = [one.kind if one.proved else "not proved to be best" for one in found]
+    kinds = [one.kind if one.proved else UNPROVED for one in found]
     return [
         Scene(
             *(experience.map_of(one.at), one.at, name, number, len(found), kind),
@@ -120,9 +168,11 @@ def of_document(document: maps.Document) -> list[Scene]:
     """The maps of a document. Raises InputError if one is none."""
     name = str(document.claims.get("instance") or document.where)
     slots = document.claims.get("slots")
-    kind = str(document.claims.get("kind") or "")
-    # A best-first search ends at the first map that it finds.
-    whole = document.claims.get("complete", False) and kind != "closed, best-first"
+    if document.by_clingo and document.maps:
+        raise InputError(
+            f"{document.where}: maps from clingo: the instance is wanted before them, "
+            f"as in topomap show INSTANCE {document.where}"
+        )
     scenes = []
     for number, entry in enumerate(document.maps, 1):
         where = f"{document.where}: map {number}"
@@ -137,7 +187,8 @@ def of_document(document: maps.Document) -> list[Scene]:
         if at and at[0] not in world.gateways():
             raise InputError(f"{where}: at begins at a gateway that is not there")
         many = len(document.maps)
-        scenes.append(Scene(world, at, name, number, many, kind, whole=whole))
+        rest = name, number, many, document.kind
+        scenes.append(Scene(world, at, *rest, whole=document.whole))
     return scenes
 
 

@@ -22,6 +22,7 @@ from topomap.topology import Gateway, Place, TopologicalMap
 
 MOST_MAPS = 100  # best maps of which a walk is planned, while none is closed
 WALKS = 101  # random walks, of which the median is told
+ENDED = ("settled", "bisimilar", "no map")  # the ways to end that are no limit
 PATIENCE = 1000  # times as many steps as there are ways, after which a random walk is given up
 
 
@@ -31,7 +32,8 @@ class Outcome:
     (several closed ones that no walk tells apart), "steps" (enough of them) or why it was cut.
 
     ``maps`` are the best maps of the end; ``truth`` says whether the hypothesis that is so is
-    among them, and its map the whole world. ``tour`` is the length of a tour over
+    among them, and its map the whole world; None where that is open: the robot could go no
+    further, or there may be more best maps than were kept. ``tour`` is the length of a tour over
     every way, by one who knows the map; ``random`` the median number of steps in which random
     walks take every way (None: most do not within PATIENCE steps a way).
     """
@@ -41,7 +43,7 @@ class Outcome:
     experience: Experience
     maps: tuple[Found, ...]
     end: str
-    truth: bool
+    truth: bool | None
     tour: int
     random: int | None
 
@@ -57,7 +59,7 @@ class Outcome:
             "signs": len(self.world.landmarks),
             "end": self.end,
             "steps": self.steps,
-            "maps": len(self.maps),
+            "best_maps": len(self.maps) if self.maps or self.end == "no map" else None,
             "truth": self.truth,
             "tour": self.tour,
             "random": self.random,
@@ -154,9 +156,9 @@ def simulate(
         maps = [one for one in maps if len(one.at) == len(robot.route) + 1]
     tour = len(route.tour(world, start[0]))
     walked = random_walk(world, start[0])
-    return Outcome(
-        world, start, robot.experience(), tuple(maps), end, robot.mapped(maps), tour, walked
-    )
+    whole = end in ENDED and len(maps) < MOST_MAPS
+    truth = robot.mapped(maps) or (False if whole else None)
+    return Outcome(world, start, robot.experience(), tuple(maps), end, truth, tour, walked)
 
 
 def _go_on(robot: Robot, maps: Sequence[Found], watch: Watch, most: int, marker: bool) -> str:
@@ -177,6 +179,8 @@ def _go_on(robot: Robot, maps: Sequence[Found], watch: Watch, most: int, marker:
         plan = explore.plan(slots, standings, watch, marker=carried)  # if it stays so, proved
     if plan.kind in ("settled", "bisimilar"):
         return plan.kind
+    if not plan.turns:
+        return "a walk was not found" if plan.fault in explore.LIMITS else str(plan.fault)
     walks = [explore.predict(one, plan.turns, plan.drop) for one in standings]
     for number, turn in enumerate(plan.turns):
         if len(robot.route) == most or turn not in robot.world.view(robot.dstate):

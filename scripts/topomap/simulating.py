@@ -6,6 +6,7 @@ import json
 from collections.abc import Iterator
 from typing import Any
 
+from topomap import formats
 from topomap.commands import environment_of, exit_status
 from topomap.environment import Environment
 from topomap.errors import InputError
@@ -13,7 +14,7 @@ from topomap.family import expand
 from topomap.files import output
 from topomap.options import MOST_STEPS
 from topomap.query import Query
-from topomap.simulate import Outcome, reached
+from topomap.simulate import ENDED, MOST_MAPS, Outcome, reached
 from topomap.simulate import simulate as explored
 from topomap.solver import Watch
 from topomap.topology import Gateway, TopologicalMap, label
@@ -25,7 +26,7 @@ ENDS = {
     "settled": "one closed map is optimal",
     "bisimilar": "no walk can tell the optimal maps apart",
     "no map": "no map is left that has what was asked for",
-    "steps": "no more steps",
+    "steps": "as many steps as it may walk; partial: steps",
 }
 
 
@@ -43,16 +44,12 @@ def simulate(args: argparse.Namespace) -> int:
         if instance:
             instance.write(f"% what a robot did and saw in {environment.name}\n\n")
             instance.write(outcome.experience.facts())
-        fault = None if outcome.end in ENDS else outcome.end
+        fault = None if outcome.end in ENDED else outcome.end
         if args.json:
-            answer = {"environment": environment.name, **outcome.json()}
-            answer |= {"complete": not fault, "fault": fault}
-            out.write(json.dumps(answer) + "\n")
+            out.write(formats.line({"environment": environment.name, **outcome.json()}, fault))
         else:
             out.write(_text(environment, outcome, fault))
-    if outcome.end == "steps":
-        fault = "steps"
-    return exit_status(fault, outcome.end == "settled" and outcome.truth)
+    return exit_status(fault, outcome.end == "settled" and bool(outcome.truth))
 
 
 def _world(args: argparse.Namespace) -> tuple[Environment, TopologicalMap, Gateway]:
@@ -80,22 +77,33 @@ def _explored(
     return explored(world, start, Query(parts, args.bound), watch, most, args.marker)
 
 
+def _end(outcome: Outcome) -> str:
+    """How it ended, in words."""
+    if outcome.end == "bisimilar" and len(outcome.maps) == MOST_MAPS:
+        return f"no walk can tell {MOST_MAPS} of the optimal maps apart"
+    return ENDS.get(outcome.end, f"partial: {outcome.end}")
+
+
 def _text(environment: Environment, outcome: Outcome, fault: str | None) -> str:
     world = outcome.world
     ways = len(world.links) // 2
     lines = [
         f"{environment.name}: {number(len(world.stars), 'place')}, {number(ways, 'way')}, "
         f"{number(len(world.landmarks), 'sign')}",
-        f"{number(outcome.steps, 'step')} walked: "
-        + (f"partial: {fault}" if fault else ENDS[outcome.end]),
+        f"{number(outcome.steps, 'step')} walked: " + _end(outcome),
     ]
     if not world.boundaries_consistent():
         lines.append("the truth has inconsistent boundaries, and so is never optimal")
-    if len(outcome.maps) == 1:
-        lines.append(f"the best map is {'' if outcome.truth else 'not '}the truth")
+    so_far = " so far" * bool(fault)
+    if outcome.maps and outcome.truth is None:
+        many = number(len(outcome.maps), "best map")
+        or_more = " or more" * (len(outcome.maps) == MOST_MAPS)
+        lines.append(f"{many}{or_more}{so_far}; what the truth is, is open")
+    elif len(outcome.maps) == 1:
+        lines.append(f"the best map{so_far} is {'' if outcome.truth else 'not '}the truth")
     elif outcome.maps:
         is_there = "" if outcome.truth else "not "
-        lines.append(f"{len(outcome.maps)} best maps, the truth is {is_there}among them")
+        lines.append(f"{len(outcome.maps)} best maps{so_far}, the truth is {is_there}among them")
     lines.append(f"a tour over every way, by one who knows the map: {number(outcome.tour, 'step')}")
     walked = "not within reach" if outcome.random is None else number(outcome.random, "step")
     lines.append(f"a random walk over every way (median): {walked}")
@@ -120,9 +128,10 @@ def _list(args: argparse.Namespace) -> int:
                     fault = outcome.end
                     break
                 rows.append({"environment": call, **outcome.json()})
+        if any(row["end"] not in ENDED for row in rows):
+            fault = fault or "steps"
         if args.json:
-            answer = {"rows": rows, "complete": not fault, "fault": fault}
-            json.dump(answer, out, indent=1)
+            json.dump(formats.answer({"rows": rows}, fault), out, indent=1)
             out.write("\n")
         else:
             out.write(table(rows))
@@ -152,9 +161,10 @@ def table(rows: list[dict[str, Any]]) -> str:
     """What came of the robots, a line each; then of how many the truth."""
     lines: list[tuple[str, ...]] = [HEAD]
     for row in rows:
-        truth = "yes" if row["truth"] else "no"
-        truth = f"one of {row['maps']}" if row["truth"] and row["maps"] > 1 else truth
-        cells = {**row, "truth": truth, "random": row["random"] or "-"}
+        maps = row["best_maps"]
+        truth = {True: "yes", False: "no", None: "open"}[row["truth"]]
+        truth = f"one of {maps}" if row["truth"] and maps > 1 else truth
+        cells = {**row, "maps": maps, "truth": truth, "random": row["random"] or "-"}
         lines.append(tuple(str(cells[key]) for key in HEAD))
     widths = [max(map(len, column)) for column in zip(*lines, strict=True)]
     text = "".join(
@@ -164,7 +174,7 @@ def table(rows: list[dict[str, Any]]) -> str:
         for line in lines
     )
     settled = [row for row in rows if row["end"] == "settled"]
-    true = sum(row["truth"] for row in settled)
+    true = sum(bool(row["truth"]) for row in settled)
     return (
         text + f"{number(len(settled), 'robot')} of {len(rows)} with one closed map, {true} true\n"
     )

@@ -378,6 +378,9 @@ def _prepare() -> None:
         clingo.parse_term("", logger=lambda *_: None)
 
 
+UNPROVED = "not proved to be best"  # the kind of a map of which it is open whether it is
+
+
 @dataclass(frozen=True)
 class Found:
     """A hypothesis: the dstate after each step, of what kind it is, and if the query

@@ -16,7 +16,7 @@ from topomap.solver import Cube, Watch, count, demand_cover
 from topomap.vocabulary import PRUNING
 
 LARGE = 10_000  # a tree with a level of more hypotheses is counted cube by cube
-KEYS = ("nodes", "maps", "final", "closed", "closed_text", "optimal", "perpendicular")
+KEYS = ("nodes", "maps_built", "final", "closed", "closed_text", "optimal", "perpendicular")
 FINAL = {
     "closed": ("travelled",),
     "closed_text": ("closed",),
@@ -35,9 +35,9 @@ def tree(
 ) -> None:
     """Fill in ``result``, by clingo alone (semantics: "What Figure 4 counts"):
 
-    ``per_step``: hypotheses after each step, from 0; ``nodes``: their sum; ``maps``:
-    those whose last step added a link, and the root; ``final``: those after the last
-    step; of these ``closed``: every path holds two places, as the table counts it;
+    ``per_step``: hypotheses after each step, from 0; ``nodes``: their sum;
+    ``maps_built``: those whose last step added a link, and the root; ``final``: those after the
+    last step; of these ``closed``: every path holds two places, as the table counts it;
     ``closed_text``: no pending gateway; ``optimal``; ``perpendicular``: closed and
     qualitatively perpendicular. What the time limit cuts off stays None.
 
@@ -54,13 +54,13 @@ def tree(
             watch.found = found = found + pair[0]
             yield pair
 
-    maps = 0
+    maps_built = 0
 
     def level(pairs: Iterator[tuple[int, int]]) -> int:
         """Take in the pairs of a step; how many hypotheses there are."""
-        nonlocal maps
+        nonlocal maps_built
         numbers = list(pairs)
-        maps += sum(grown for _, grown in numbers)
+        maps_built += sum(grown for _, grown in numbers)
         result["per_step"].append(sum(total for total, _ in numbers))
         return int(result["per_step"][-1])
 
@@ -91,7 +91,9 @@ def tree(
     for step in steps:
         watch.title(f"step {step} of {last}")
         level(islice(pairs, len(parts)))
-    result.update(nodes=sum(result["per_step"]), maps=maps, final=result["per_step"][-1])
+    result.update(
+        nodes=sum(result["per_step"]), maps_built=maps_built, final=result["per_step"][-1]
+    )
     for key in asked:
         watch.title(f"{key} maps")
         result[key] = sum(total for total, _ in islice(pairs, len(cubes_of[key])))
@@ -120,7 +122,7 @@ class Tally:
 
     steps: int
     per_step: list[int] = field(default_factory=list)
-    maps: int = 0
+    maps_built: int = 0
     closed: int = 0
     closed_text: int = 0
     perpendicular: int = 0
@@ -133,7 +135,7 @@ class Tally:
     def add(self, node: Hypothesis) -> None:
         """Count a node."""
         self.per_step[node.steps] += 1
-        self.maps += node.grown
+        self.maps_built += node.grown
         if node.steps < self.steps:
             return
         self.closed += node.travelled()
@@ -146,7 +148,7 @@ class Tally:
     def merge(self, other: "Tally") -> None:
         """Count what another tally has counted."""
         self.per_step = [a + b for a, b in zip(self.per_step, other.per_step, strict=True)]
-        self.maps += other.maps
+        self.maps_built += other.maps_built
         self.closed += other.closed
         self.closed_text += other.closed_text
         self.perpendicular += other.perpendicular
@@ -164,7 +166,7 @@ class Tally:
         counted = {key: getattr(self, key) for key in FINAL}
         return {
             "nodes": sum(self.per_step),
-            "maps": self.maps,
+            "maps_built": self.maps_built,
             "final": self.per_step[-1],
             **counted,
             "per_step": self.per_step,

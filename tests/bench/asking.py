@@ -134,7 +134,7 @@ def tasks(folder: Path) -> Iterator[Task]:
     walked = folder / "walked.lp"
     yield Task(
         f"simulate grid 4 4 --signs 0.3 --instance {walked}",
-        lambda answer: f"{answer['maps']} optimal map, the truth: {answer['truth']}",
+        lambda answer: f"{answer['best_maps']} optimal map, the truth: {answer['truth']}",
         lambda: settled(walked),
     )
 
