@@ -208,7 +208,8 @@ def test_json(inside, tmp_path):
     assert (done.returncode, done.stderr) == (2, "")
     none = dict.fromkeys(("steps", "slots", "views", "landmarks"))
     good = {"valid": True, "faults": [], "more_faults": None, "slots": 4}
-    assert json.loads(done.stdout) == {
+    answer = json.loads(done.stdout)
+    assert answer == {
         "format": 1,
         "files": [
             {
@@ -237,6 +238,7 @@ def test_json(inside, tmp_path):
             },
         ],
         "complete": True,
+        "fault": None,
     }
     assert inside("validate", GRID, odd, "--json").returncode == 0
 

@@ -11,37 +11,26 @@ from array import array
 from collections.abc import Iterator
 from functools import partial
 from pathlib import Path
-from typing import IO, Any
+from typing import IO, TYPE_CHECKING, Any
 
-from topomap import (
-    beyond,
-    branching,
-    environment,
-    figure4,
-    formats,
-    maps,
-    network,
-    search,
-    share,
-    solver,
-)
-from topomap.check import STEP_RULES
-from topomap.environment import Environment
+from topomap import formats
 from topomap.errors import DONE, INTERRUPTED, NO, PARTIAL, InputError, say
 from topomap.experience import Experience, read
-from topomap.family import expand
 from topomap.files import MOST_BYTES, output, text
 from topomap.folders import ENCODINGS, INSTANCES
-from topomap.generate import Instance, instance
 from topomap.journal import Journal
 from topomap.options import LARGEST, MOST_PLACES
 from topomap.query import Query
-from topomap.report import Report, steps_json
-from topomap.share import ALONE, Crew
+from topomap.share import ALONE, Crew, crew
 from topomap.solver import INTERRUPT, MEMORY, UNPROVED, Cube, Found, Stopped, Watch, Way, best
-from topomap.statistics import KEYS, Tally, tree
 from topomap.topology import TopologicalMap
 from topomap.vocabulary import PARTS, PROPERTIES
+
+# What only some subcommands need is loaded by them: most calls are done sooner than it loads.
+if TYPE_CHECKING:
+    from topomap.environment import Environment
+    from topomap.generate import Instance
+    from topomap.report import Report
 
 STOPS = Stopped, MemoryError  # what leaves a partial answer
 
@@ -49,12 +38,14 @@ STOPS = Stopped, MemoryError  # what leaves a partial answer
 def path(args: argparse.Namespace) -> int:
     """Print where the encodings or the instances are."""
     found = {"encodings": str(ENCODINGS), "instances": str(INSTANCES)}
-    print(json.dumps({"format": 1, **found, "complete": True}) if args.json else found[args.what])
+    print(formats.line(found).rstrip() if args.json else found[args.what])
     return DONE
 
 
 def generate(args: argparse.Namespace) -> int:
     """Explore an environment and write the instance."""
+    from topomap.report import steps_json
+
     made = _instance(args)
     target = args.output
     if target and (target.endswith("/") or Path(target).is_dir()):
@@ -79,8 +70,10 @@ def generate(args: argparse.Namespace) -> int:
     return DONE
 
 
-def environment_of(args: argparse.Namespace) -> Environment:
+def environment_of(args: argparse.Namespace) -> "Environment":
     """The environment that a call of ``generate`` or ``simulate`` names."""
+    from topomap import environment, network
+
     if args.kind == "network":
         world, warnings = network.load(args.file, args.slots, args.north)
         for warning in warnings:
@@ -97,7 +90,9 @@ def environment_of(args: argparse.Namespace) -> Environment:
     return world
 
 
-def _instance(args: argparse.Namespace) -> Instance:
+def _instance(args: argparse.Namespace) -> "Instance":
+    from topomap.generate import instance
+
     world = environment_of(args)
     if args.route == "walk" and args.steps is None:
         raise InputError("topomap generate: --route walk needs --steps")
@@ -121,6 +116,8 @@ def _query(args: argparse.Namespace) -> Query:
 
 def _run(args: argparse.Namespace, *experiences: Experience) -> dict[str, Any]:
     """What a run computes: a journal goes on with no other one."""
+    from topomap import solver
+
     texts = [solver.digest(), *(experience.facts() for experience in experiences)]
     keys = ("by", "encoding", *PARTS, "optimal", "bound", "horizon")
     asked = {key: getattr(args, key, None) for key in keys}
@@ -130,6 +127,8 @@ def _run(args: argparse.Namespace, *experiences: Experience) -> dict[str, Any]:
 
 def solve(args: argparse.Namespace) -> int:
     """Enumerate the maps of each instance."""
+    from topomap.report import Report
+
     _with_noise(args)
     inputs = []
     for path in args.instance:
@@ -186,7 +185,7 @@ def _with_noise(args: argparse.Namespace) -> None:
 
 
 def _solve_one(
-    args: argparse.Namespace, experience: Experience, report: Report, journal: Journal, crew: Crew
+    args: argparse.Namespace, experience: Experience, report: "Report", journal: Journal, crew: Crew
 ) -> str | None:
     """Write the maps of an instance; why they may not be all, if so."""
     fault, candidate = None, None
@@ -220,6 +219,8 @@ def _found(
 ) -> Iterator[Found]:
     """The maps that ``solve`` asks for; if all go to a file or there is a crew, part by part
     of the tree, each part a unit of the journal."""
+    from topomap import search, solver
+
     query = _query(args)
     way = search.hypotheses if args.by == "search" else solver.hypotheses
     if args.optimal:
@@ -287,11 +288,14 @@ def _crew(args: argparse.Namespace) -> Crew:
     shared = (args.jobs or 1) > 1 or args.dask
     if shared and (getattr(args, "optimal", False) or _query(args).optimizes):
         raise InputError("topomap solve: --jobs and --dask share out all maps, not the best ones")
-    return share.crew(args.jobs or 1, args.dask)
+    return crew(args.jobs or 1, args.dask)
 
 
 def _truth(file: str, experience: Experience, horizon: int | None) -> TopologicalMap:
     """The real map of an experience, from a file that ``generate --truth`` wrote."""
+    from topomap import maps
+    from topomap.check import STEP_RULES
+
     entries = [entry for document in maps.read(file, MOST_BYTES) for entry in document.maps]
     if len(entries) != 1:
         raise InputError(f"{file}: {len(entries)} maps; the real map is one")
@@ -304,6 +308,8 @@ def _truth(file: str, experience: Experience, horizon: int | None) -> Topologica
 
 def check(args: argparse.Namespace) -> int:
     """Check maps that anyone made, by rules and by definition."""
+    from topomap import maps
+
     documents = maps.read(args.maps)
     said = any(document.claims.get("noise") is not None for document in documents)
     experience = read(args.instance, said or args.noise is not None)
@@ -353,6 +359,8 @@ def check(args: argparse.Namespace) -> int:
 
 def count(args: argparse.Namespace) -> int:
     """Count the search tree of an instance, by clingo."""
+    from topomap.statistics import tree
+
     experience = read(args.instance)
     figures: dict[str, Any] = {}
     fault = None
@@ -373,6 +381,9 @@ def count(args: argparse.Namespace) -> int:
 
 def search_tree(args: argparse.Namespace) -> int:
     """Search the tree of an instance: count it, or find a closed map best-first."""
+    from topomap import search
+    from topomap.statistics import KEYS, Tally
+
     experience = read(args.instance)
     query = _query(args)
     if args.order == "best":
@@ -401,6 +412,9 @@ def search_tree(args: argparse.Namespace) -> int:
 
 def _best_first(args: argparse.Namespace, experience: Experience, query: Query) -> int:
     """The paper's best-first search, with backtracking while the map is not closed."""
+    from topomap import maps, search
+    from topomap.report import Report
+
     fault = None
     nodes = 0
     with output(args.output) as out, Watch(args.timeout) as watch:
@@ -425,6 +439,9 @@ def _write_figures(
 ) -> None:
     """Write what ``count`` gives, or ``search``; of a search that was cut, ``at_least`` holds
     what the nodes met until then come to."""
+    from topomap import figure4
+    from topomap.statistics import KEYS
+
     if args.json:
         out.write(formats.line({"instance": args.instance, **figures}, fault))
         return
@@ -441,6 +458,8 @@ def _write_figures(
 
 def branching_nodes(args: argparse.Namespace) -> int:
     """Check the paper's equation (1) at every branching node of the planar tree."""
+    from topomap import branching, search
+
     experience = read(args.instance)
     query = _query(args).having("planar")
     summary = branching.Summary()
@@ -469,6 +488,8 @@ def branching_nodes(args: argparse.Namespace) -> int:
 
 def table(args: argparse.Namespace) -> int:
     """Count the paper's table, or what is beyond it, print it and write it as JSON."""
+    from topomap import beyond, figure4
+
     name = "beyond" if args.beyond else "figure4"
     path = f"results/{name}.json" if args.output is None else args.output
     jobs = args.jobs or os.cpu_count() or 1
@@ -483,8 +504,8 @@ def table(args: argparse.Namespace) -> int:
                 run = {"command": name, "columns": beyond.COLUMNS}
                 journal = stack.enter_context(Journal(path, run, args.resume))
                 watch = stack.enter_context(Watch(args.timeout))
-                crew = stack.enter_context(share.crew(jobs))
-                counted = beyond.rows(crew, watch, journal)
+                workers = stack.enter_context(crew(jobs))
+                counted = beyond.rows(workers, watch, journal)
             else:
                 journal = Journal()
                 counted = figure4.rows(jobs, args.timeout)
@@ -514,6 +535,8 @@ def table(args: argparse.Namespace) -> int:
 def family(args: argparse.Namespace) -> int:
     """Write the call of each instance of a family where it changed, and drop what is no
     longer listed of what the last call made."""
+    from topomap.family import expand
+
     folder = Path(args.directory)
     calls: dict[str, str] = {}
     for line, call in expand(args.file):

@@ -6,7 +6,8 @@ import threading
 import time
 from typing import Any
 
-DELAY = 2.0  # seconds until it is shown
+SOON, OFTEN = 2.0, 0.2  # seconds until it is shown, and from then on, on a terminal
+SELDOM = 10.0  # the same elsewhere, where each line stays
 
 
 class Progress:
@@ -16,7 +17,8 @@ class Progress:
 
     def __init__(self, quiet: bool = False):
         self._quiet = quiet
-        self._begun = time.monotonic()
+        self._interval = OFTEN if sys.stderr.isatty() else SELDOM
+        self._first = time.monotonic() + max(SOON, self._interval)
         self._bar: Any = None
         self._title = self._phase = ""
 
@@ -30,11 +32,11 @@ class Progress:
 
     def show(self, found: int) -> None:
         """Show how many maps were found, if it is time for that."""
-        if self._quiet or (self._bar is None and time.monotonic() < self._begun + DELAY):
+        if self._quiet or (self._bar is None and time.monotonic() < self._first):
             return
         with contextlib.suppress(OSError):  # stderr cannot be written
             if self._bar is None:
-                self._bar = _bar()
+                self._bar = _bar(self._interval)
             words = ": ".join(filter(None, [self._title, self._phase]))
             self._bar.set_description_str(words, refresh=False)
             self._bar.update(found - self._bar.n)
@@ -46,11 +48,10 @@ class Progress:
                 self._bar.close()
 
 
-def _bar() -> Any:
+def _bar(interval: float) -> Any:
     from tqdm import tqdm
 
     tqdm.monitor_interval = 0  # a thread that may never begin
     # tqdm's own lock is made for processes, and may be left behind by one that is killed.
     tqdm.set_lock(threading.RLock())
-    interval = 0.2 if sys.stderr.isatty() else 10
     return tqdm(unit=" maps", mininterval=interval, miniters=0, leave=False)

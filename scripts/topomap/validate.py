@@ -5,13 +5,12 @@ of instances that can be meant as they are, but seldom are.
 """
 
 import argparse
-import json
 from collections import defaultdict
 from collections.abc import Iterator
 from itertools import islice, pairwise
 from typing import Any
 
-from topomap import files, words
+from topomap import files, formats, words
 from topomap.errors import BAD_INPUT, DONE, InputError, printable
 from topomap.experience import Experience, Facts, Fault
 
@@ -29,7 +28,7 @@ def validate(args: argparse.Namespace) -> int:
     """Tell of each file what is wrong with it; status 2 if anything is."""
     judged = [_judged(path) for path in args.file] if args.json else map(_judged, args.file)
     if args.json:
-        print(json.dumps({"format": 1, "files": [*judged], "complete": True}, indent=1))
+        print(formats.line({"files": judged}), end="")
         return DONE if all(file["valid"] for file in judged) else BAD_INPUT
     status = DONE
     for file in judged:
