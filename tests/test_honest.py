@@ -388,6 +388,7 @@ def test_documents_of_another_format_are_refused_in_one_line(inside, tmp_path):
         file.write_text(old)
 
 
+FORMATS = (ROOT / "docs/formats.md").read_text()
 WHOLE = [
     ("generate", "grid", "2", "2", "--route", "snake"),
     ("solve", GRID, "--optimal"),
@@ -422,6 +423,7 @@ def test_every_answer_says_its_format_first_and_last_that_it_is_whole(inside, ma
             assert next(iter(result.items())) == ("format", 1)
         whole = answer.get("maps", [])
         assert isinstance(whole, list)
+        assert {key for key in answer if f"`{key}`" not in FORMATS} == set()
 
 
 def test_a_kind_that_is_open_is_read_back():
