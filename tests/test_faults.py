@@ -304,8 +304,9 @@ def confined(kilobytes, *arguments):
 
 
 def least_memory():
-    """Megabytes in which the command starts."""
-    return next(mb for mb in range(50, 500, 10) if not confined(mb * 1024, "--version")[0])
+    """Megabytes in which all is loaded that a search needs."""
+    call = "search", SNAKE, "--horizon", "0"
+    return next(mb for mb in range(20, 500, 5) if not confined(mb * 1024, *call)[0])
 
 
 @pytest.mark.parametrize(

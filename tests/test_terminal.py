@@ -601,7 +601,7 @@ def test_maps_of_clingo_are_not_shown_without_the_right_instance(inside, tmp_pat
         ((PAPER, file), f"{file}: map 1: step "),
         ((GRID, file, "--planar"), f"{file}: the maps are given: parts, bound, horizon"),
         ((GRID, file, "--map", 5), f"{file}: it has 4 maps, there is no map 5"),
-        ((file, file), f"{file}: the facts of an instance are wanted"),
+        ((file, file), f"{file}:1: the facts of an instance are wanted"),
         (("-", "-"), "-: standard input is the instance or the maps, not both"),
     ):
         for command in (["show"], ["export", "--format", "dot"]):

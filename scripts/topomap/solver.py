@@ -22,6 +22,7 @@ from typing import Any, ClassVar, TypeVar
 import clingo
 
 from topomap import __version__, phases
+from topomap.errors import InputError
 from topomap.experience import DState, Experience, Misread
 from topomap.folders import ENCODINGS
 from topomap.progress import Progress
@@ -32,6 +33,7 @@ FORMS = {"fast": ENCODINGS / "fast", "plain": ENCODINGS}
 
 Answer = TypeVar("Answer")
 Cube = tuple[DState, ...]  # the first dstates of a hypothesis
+AHEAD = 1000  # answers that wait to be taken, at most
 INTERRUPT = "interrupted"
 MEMORY = "out of memory"
 SIGNALS = (signal.SIGINT, signal.SIGTERM)
@@ -58,8 +60,10 @@ def control(
     if query.horizon is not None:
         arguments += ["-c", f"horizon={query.horizon}"]
     made = clingo.Control(arguments)
-    for file in files:
-        made.load(str(FORMS[query.encoding] / f"{file}.lp"))
+    for path in (FORMS[query.encoding] / f"{file}.lp" for file in files):
+        if not path.is_file():
+            raise InputError(f"{path}: not found; topomap is not installed as a whole")
+        made.load(str(path))
     made.add("base", [], facts)
     return made
 
@@ -248,16 +252,14 @@ def _in_thread(
 ) -> Iterator[Any]:
     """What ``work`` puts, in a thread of its own; what it puts last is False if it is to
     end. Raises Stopped at the time limit, or out of memory."""
-    found: queue.Queue[Any] = queue.Queue(maxsize=1000)
+    found: queue.SimpleQueue[Any] = queue.SimpleQueue()
     stop = threading.Event()
 
     def put(item: Any) -> bool:
-        while not stop.is_set():
-            try:
-                found.put(item, timeout=0.1)
-                break
-            except queue.Full:
-                continue
+        while found.qsize() >= AHEAD and not stop.is_set():
+            time.sleep(0.01)
+        if not stop.is_set():
+            found.put(item)
         return not stop.is_set()
 
     def run() -> None:
@@ -405,6 +407,18 @@ def misreadings(terms: Iterable[Sequence[clingo.Symbol]]) -> tuple[Misread, ...]
     return tuple(sorted([*sorted(gateways), *sorted(landmarks)], key=itemgetter(0)))
 
 
+class _Terms(dict[clingo.Symbol, tuple[str, Any]]):
+    """The name of each atom, and its terms, of ``at/3`` as numbers. Each atom is read once: to
+    ask clingo for its parts takes longer than to find the atom again in the next map."""
+
+    def __missing__(self, atom: clingo.Symbol) -> tuple[str, Any]:
+        terms: Any = atom.arguments
+        if atom.name == "at":
+            terms = tuple(term.number for term in terms)
+        self[atom] = atom.name, terms
+        return self[atom]
+
+
 def hypotheses(
     experience: Experience,
     query: Query,
@@ -416,10 +430,12 @@ def hypotheses(
     all of the best with their proof. With ``cubes``, which is not for minimising, those
     that begin with the first of them, then a None, and so on."""
 
+    known = _Terms()
+
     def read(model: clingo.Model) -> Found:
-        shown = [(fact.name, fact.arguments) for fact in model.symbols(shown=True)]
-        facts = sorted([a.number for a in terms] for name, terms in shown if name == "at")
-        at = tuple((place, slot) for _, place, slot in facts)
+        shown = [known[atom] for atom in model.symbols(shown=True)]
+        steps = sorted(terms for name, terms in shown if name == "at")
+        at = tuple((place, slot) for _, place, slot in steps)
         if query.optimizes:
             misread = misreadings(terms for name, terms in shown if name == "misread")
             cost = tuple(model.cost)
