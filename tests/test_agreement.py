@@ -17,8 +17,9 @@ from hypothesis import strategies as st
 from topomap import search, solver
 from topomap.check import by_definition, by_rules
 from topomap.query import Query
-from topomap.solver import FORMS, Watch
+from topomap.solver import FORMS
 from topomap.statistics import Tally
+from topomap.watch import Watch
 from worlds import WORLDS, random_experience
 
 QUICK = settings(
@@ -53,7 +54,7 @@ def case(experience, parts=(), *arguments, form="plain"):
 def searched(experience, *parts, places=None, horizon=None, way=search.hypotheses):
     """The hypotheses that the search finds, each once; the best ones, if a part minimises."""
     query = Query(frozenset(parts), places, horizon)
-    found = [f.at for f in way(experience, query, Watch(quiet=True)) if f.proved]
+    found = [f.at for f in way(experience, query, Watch()) if f.proved]
     assert len(found) == len(set(found))
     return set(found)
 
@@ -69,13 +70,13 @@ def all_give(expected, experience, parts=(), *arguments, facts=None):
 def driven(experience, form, *parts):
     """The hypotheses that the driver finds with a form of the encodings."""
     query = Query(frozenset(parts), encoding=form)
-    return {f.at for f in solver.hypotheses(experience, query, Watch(quiet=True))}
+    return {f.at for f in solver.hypotheses(experience, query, Watch())}
 
 
 def best(experience, way, form="fast"):
     """The optimal maps, or the best so far, with what they cost and which of these they are."""
     query = Query(encoding=form)
-    found = [f for f in solver.best(experience, query, Watch(quiet=True), way) if f.proved]
+    found = [f for f in solver.best(experience, query, Watch(), way) if f.proved]
     return {(f.at, f.cost, f.kind) for f in found}
 
 

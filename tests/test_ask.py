@@ -16,7 +16,8 @@ from topomap.check import by_definition, by_rules
 from topomap.errors import InputError
 from topomap.experience import parse, read
 from topomap.query import Query
-from topomap.solver import FORMS, Stopped, Watch, forget, hypotheses
+from topomap.solver import FORMS, forget, hypotheses
+from topomap.watch import Stopped, Watch
 from worlds import WORLDS, random_experience
 
 SIGNS = {
@@ -53,7 +54,7 @@ def statement(draw, experience):
 def settled(experience, texts, query=ANY, optimal=False):
     """What the command finds."""
     answers = Answers([statements.parse(text, experience, "ask") for text in texts])
-    answers.settle(experience, query, optimal, Watch(quiet=True))
+    answers.settle(experience, query, optimal, Watch())
     return answers
 
 
@@ -229,7 +230,7 @@ def test_papers_instances(topomap, tmp_path, name, arguments, known):
 def test_what_is_asked_of_the_4x4_snake_is_what_its_maps_say():
     experience = GRIDS["4x4-snake"]
     query = Query(frozenset(["planar", "closed"]), 16)
-    maps = [found.at for found in hypotheses(experience, query, Watch(quiet=True))]
+    maps = [found.at for found in hypotheses(experience, query, Watch())]
     assert len(maps) == 6
     seen = experience.slots, experience.views, (None, *experience.turns), experience.landmarks
     whole = {at: Hypothesis(seen, at) for at in maps}
@@ -463,7 +464,7 @@ def test_the_same_twice(topomap):
 def test_a_long_exploration_goes_through_the_phases():
     experience = read(ROOT / "instances/manhattan-tour88-signs30.lp")
     query = Query(frozenset(["planar", "closed", "perpendicular"]))
-    (found,) = hypotheses(experience, query, Watch(quiet=True))
+    (found,) = hypotheses(experience, query, Watch())
     seen = experience.slots, experience.views, (None, *experience.turns), experience.landmarks
     whole = {found.at: Hypothesis(seen, found.at)}
     draw = random.Random("manhattan")

@@ -27,11 +27,11 @@ from topomap.pictures import FORMATS
 from topomap.planarize import lacking, planar_part, routed
 from topomap.query import Query
 from topomap.scenes import Scene
-from topomap.solver import Watch
 from topomap.topology import TopologicalMap, gid, label
+from topomap.watch import Watch
 from worlds import WORLDS, random_experience
 
-QUIET = Watch(quiet=True)
+QUIET = Watch()
 GRID = "instances/grid-3x3-snake.lp"
 NUMBER = r"-?\d+(?:\.\d+)?"
 RADIUS = draw.RADIUS * draw.UNIT * 72  # of a place, in the units of a picture

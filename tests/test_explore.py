@@ -19,12 +19,13 @@ from topomap.experience import read
 from topomap.explore import Standing, plan, predict, tells
 from topomap.generate import instance
 from topomap.query import Query
-from topomap.solver import Watch, hypotheses
+from topomap.solver import hypotheses
+from topomap.watch import Watch
 from walks import alike, asked, best, gone, same, scattered, sight, standing
 
 
 def quiet(timeout=None):
-    return Watch(timeout, quiet=True)
+    return Watch(timeout)
 
 
 def maps(experience, *parts, bound=None):

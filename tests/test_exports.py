@@ -26,8 +26,8 @@ from topomap.query import Query
 from topomap.report import map_json
 from topomap.scenes import Scene
 from topomap.search import hypotheses
-from topomap.solver import Watch
 from topomap.topology import gid
+from topomap.watch import Watch
 from worlds import WORLDS, random_experience, random_world
 
 # pydot calls pyparsing by names of old.
@@ -41,7 +41,7 @@ READ_BACK = {"graphml": exports.graphml, "json": exports.node_link}
 def optimal(name):
     """The best maps of an instance."""
     seen = read(ROOT / "instances" / f"{name}.lp")
-    found = solver.best(seen, Query(frozenset()), Watch(quiet=True), solver.hypotheses)
+    found = solver.best(seen, Query(frozenset()), Watch(), solver.hypotheses)
     last = {}
     for one in filter(None, found):
         last = {**last, one.at: one} if one.proved else {one.at: one}
@@ -51,7 +51,7 @@ def optimal(name):
 def scene_of(seen, draw):
     """One of the maps of an experience, as a rule one of few places: with loops and parallel
     links, and links that cross."""
-    found = hypotheses(seen, Query(frozenset()), Watch(quiet=True))
+    found = hypotheses(seen, Query(frozenset()), Watch())
     found = [one.at for one in itertools.islice(found, 300)]
     places = min(len({place for place, _ in at}) for at in found)
     few = [at for at in found if len({place for place, _ in at}) == places]

@@ -18,9 +18,10 @@ import pytest
 from conftest import BIN, COLUMNS, ROOT, run
 from corpus import CORRIDOR
 from topomap import solver
+from topomap.watch import Stopped, Watch
 
 OLD = "old\n"
-QUIET = solver.Watch(quiet=True)
+QUIET = Watch()
 GRID = ROOT / "instances/grid-3x3-snake.lp"
 PAPER = ROOT / "instances/grid-3x4-paper.lp"
 SNAKE = ROOT / "instances/grid-4x4-snake.lp"
@@ -389,7 +390,7 @@ def test_a_thread_that_ends_unheard_is_not_waited_for(monkeypatch):
         raise SystemExit  # as MemoryError does where not even that can be told
 
     monkeypatch.setattr(solver.Program, "solve", end)
-    with pytest.raises(solver.Stopped, match="out of memory"):
+    with pytest.raises(Stopped, match="out of memory"):
         list(solver.hypotheses(CORRIDOR, solver.Query(), QUIET))
 
 

@@ -10,9 +10,9 @@ from topomap.cli import main
 from topomap.environment import grid
 from topomap.experience import read
 from topomap.generate import instance
-from topomap.solver import Watch
+from topomap.watch import Watch
 
-QUIET = Watch(quiet=True)
+QUIET = Watch()
 DOCS = ROOT / "docs/figures"
 NAMES = list(figures.figures(ROOT / "instances", QUIET))
 SOON = "first", "place", "figure1", "figure3", "equation1"

@@ -27,7 +27,7 @@ from topomap.generate import instance
 from topomap.query import Query
 from topomap.report import Report
 from topomap.scenes import Scene
-from topomap.solver import Watch
+from topomap.watch import Watch
 from worlds import random_experience
 
 SECONDS = 10
@@ -126,7 +126,7 @@ def maps(draw):
     query = Query(frozenset(["closed"]), noise=draw.choice([None, 1]))
     out = io.StringIO()
     report = Report(out, "good.lp", seen, query, None, None, as_json=True)
-    found = list(search.hypotheses(seen, replace(query, noise=None), Watch(quiet=True)))
+    found = list(search.hypotheses(seen, replace(query, noise=None), Watch()))
     for one in found:
         misread = [] if query.noise is None else [(draw.randrange(4), draw.randrange(4))]
         report.add(replace(one, misread=tuple(misread)))

@@ -14,9 +14,10 @@ from conftest import ROOT
 from topomap import commands, formats, scenes, simulate, solver
 from topomap.environment import grid
 from topomap.experience import read
+from topomap.found import UNPROVED, Found
 from topomap.maps import KINDS, document
 from topomap.query import Query
-from topomap.solver import UNPROVED, Found, Stopped, Watch
+from topomap.watch import Stopped, Watch
 
 GRID, SNAKE = "instances/grid-3x3-snake.lp", "instances/grid-4x4-snake.lp"
 LARGE = "instances/manhattan-tour40-signs30.lp"  # it has 305,359 maps
@@ -100,7 +101,7 @@ def made(tmp_path_factory):
     """Files that calls name."""
     folder = tmp_path_factory.mktemp("honest")
     names = {name: folder / name for name in ("truth", "maps", "worlds", "out", "four")}
-    experience, everything = read(ROOT / GRID), Watch(quiet=True)
+    experience, everything = read(ROOT / GRID), Watch()
     found = list(solver.hypotheses(experience, Query(), everything))
     at = [[[step, *dstate] for step, dstate in enumerate(one.at)] for one in found]
     names["maps"].write_text(json.dumps([{"at": one} for one in at]))
@@ -214,7 +215,7 @@ def cut_short(monkeypatch, *found):
 
 def test_maps_that_are_not_proved_to_be_best_are_of_no_better_kind(inside, monkeypatch, tmp_path):
     experience = read(ROOT / GRID)
-    best = solver.best(experience, Query(), Watch(quiet=True))
+    best = solver.best(experience, Query(), Watch())
     at = next(one.at for one in best if one.proved)
     cut_short(monkeypatch, Found(at, "optimal", (6, 9), proved=False))
     done = inside("solve", GRID, "--optimal")
@@ -279,7 +280,7 @@ def test_one_of_two_maps_is_not_said_to_be_the_only_one(inside, tmp_path):
 
 def test_a_scene_is_one_of_those_found_unless_it_is_told_otherwise():
     seen = read(ROOT / GRID)
-    (at, *_) = [one.at for one in solver.best(seen, Query(), Watch(quiet=True)) if one.proved]
+    (at, *_) = [one.at for one in solver.best(seen, Query(), Watch()) if one.proved]
     scene = scenes.Scene(seen.map_of(at), at, "made")
     assert scene.title.startswith("made: map 1 of 1 found\n")
 
@@ -316,7 +317,7 @@ def test_a_robot_that_may_not_go_on_does_not_know_the_truth(inside):
 def test_a_robot_with_more_best_maps_than_it_keeps_does_not_know_the_truth(monkeypatch):
     monkeypatch.setattr(simulate, "MOST_MAPS", 1)
     world = grid(3, 3).map
-    outcome = simulate.simulate(world, ((0, 0), 1), Query(), Watch(quiet=True), 5)
+    outcome = simulate.simulate(world, ((0, 0), 1), Query(), Watch(), 5)
     assert len(outcome.maps) == 1
     assert outcome.truth is not False
 
@@ -336,7 +337,7 @@ def test_ask_leaves_open_what_the_closed_maps_do_not_settle():
 
     answers._settle = closed_only
     with pytest.raises(Stopped):
-        answers.settle(experience, Query(), True, Watch(quiet=True))
+        answers.settle(experience, Query(), True, Watch())
     assert (answers.some, answers.kind) == (None, None)
 
 

@@ -15,7 +15,7 @@ from topomap.experience import read
 from topomap.journal import Journal
 from topomap.query import Query
 from topomap.share import ALONE
-from topomap.solver import Watch
+from topomap.watch import Watch
 
 GRID = str(ROOT / "instances/grid-3x3-snake.lp")
 PAPER = str(ROOT / "instances/grid-3x4-paper.lp")
@@ -339,7 +339,7 @@ def test_beyond_goes_on(tmp_path, monkeypatch):
 
 def test_clingo_may_not_finish_beyond(monkeypatch):
     monkeypatch.setattr(beyond, "COLUMNS", [(4, 4, 16, False)])
-    (row,) = beyond.rows(ALONE, Watch(quiet=True), Journal(), limit=0.01)
+    (row,) = beyond.rows(ALONE, Watch(), Journal(), limit=0.01)
     assert (row["final"], row["clingo"]) == (23685, {})
 
 

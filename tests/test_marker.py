@@ -12,9 +12,10 @@ from topomap.environment import EAST, grid
 from topomap.experience import Experience, explore, parse, read
 from topomap.query import Query
 from topomap.route import snake
-from topomap.solver import FORMS, Watch
+from topomap.solver import FORMS
+from topomap.watch import Watch
 
-QUIET = Watch(quiet=True)
+QUIET = Watch()
 # Turns after the snake, and how many places the false one of two maps has that look alike: the
 # paper's Figure 1 c, which is as large as the grid, and Figure 5 d.
 PAIRS = [(3, [0, 1, 1, 1], 9), (4, [0, 1, 2, 3, 2, 3, 2], 12)]

@@ -16,10 +16,11 @@ from topomap.environment import grid
 from topomap.errors import InputError
 from topomap.experience import Experience, explore, parse, read
 from topomap.query import Query
-from topomap.solver import Watch, misreadings
+from topomap.solver import misreadings
+from topomap.watch import Watch
 from worlds import random_experience
 
-QUIET = Watch(quiet=True)
+QUIET = Watch()
 MISREAD = ROOT / "instances/grid-3x3-misread.lp"
 PARTS = [
     (),

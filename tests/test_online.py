@@ -13,10 +13,10 @@ from topomap import online, search, solver
 from topomap.experience import MARKER, read
 from topomap.online import Certain, Follower, crossed
 from topomap.query import Query
-from topomap.solver import Watch
+from topomap.watch import Watch
 from worlds import WORLDS, random_experience
 
-WATCH = Watch(quiet=True)
+WATCH = Watch()
 
 
 def begun(experience, planar=False, bound=None, most=online.MOST_COUNTED):

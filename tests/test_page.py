@@ -28,7 +28,7 @@ from topomap.query import Query
 from topomap.replay import SHOWN, fate, replay
 from topomap.scenes import Scene
 from topomap.search import breadth_first, root
-from topomap.solver import Watch
+from topomap.watch import Watch
 from worlds import WORLDS, random_experience
 
 GRID = "instances/grid-3x3-snake.lp"
@@ -190,7 +190,7 @@ def test_what_is_refused_is_what_the_definitions_refuse(record_property):
         bound = draw.choice([None, None, 3, 5])
         parts = ["planar"] * planar + ["perpendicular"] * perpendicular
         query = Query(frozenset(parts), bound)
-        steps, fault = replay(seen, query, [], Watch(quiet=True))
+        steps, fault = replay(seen, query, [], Watch())
         assert fault is None
         level = [((0, 0),)]
         for number, step in enumerate(steps):
@@ -256,7 +256,7 @@ def test_the_page_tells_what_is_refused_of_each_hypothesis(three):
     _, page = three
     seen = read(ROOT / GRID)
     best = sorted(answers(("closed", "boundary", "minimal"), seen.facts()))
-    shown = [at for step in replay(seen, Query(), best, Watch(quiet=True))[0] for at in step.shown]
+    shown = [at for step in replay(seen, Query(), best, Watch())[0] for at in step.shown]
     captions = [
         " ".join(e["text"].split())
         for e in page.all("figure")
@@ -297,7 +297,7 @@ def test_words_of_what_is_refused():
 def test_shown_are_the_beginnings_of_the_best_and_the_cheapest():
     seen = read(ROOT / GRID)
     best = sorted(answers(("closed", "boundary", "minimal"), seen.facts()))
-    steps, _ = replay(seen, Query(), best, Watch(quiet=True))
+    steps, _ = replay(seen, Query(), best, Watch())
     node = root(seen, Query())
     cost = {node.dstates: node.cost for node in breadth_first(node)}
     for step, found in enumerate(steps):
@@ -314,7 +314,7 @@ def test_large_steps_are_looked_at_in_part(monkeypatch):
     monkeypatch.setattr("topomap.replay.MOST", 20)
     monkeypatch.setattr("topomap.replay.KEPT", 5)
     seen = read(ROOT / GRID)
-    steps, _ = replay(seen, Query(), [], Watch(quiet=True))
+    steps, _ = replay(seen, Query(), [], Watch())
     whole = levels(seen.facts())
     first = next(step for step, level in enumerate(whole) if len(level) > 20)
     for number, step in enumerate(steps):
@@ -339,7 +339,7 @@ def clockwise(drawn, world, place):
 )
 def test_drawings_are_of_the_maps(name):
     seen = read(ROOT / name).cut(12)
-    about = Exploration(name, seen, Query(), 2, Watch(quiet=True))
+    about = Exploration(name, seen, Query(), 2, Watch())
     about.look(60)
     assert not about.faults
     shown = [at for step in about.steps for at in step.shown]

@@ -9,8 +9,9 @@ from topomap import figure4
 from topomap.experience import read
 from topomap.journal import Journal
 from topomap.query import Query
-from topomap.solver import FORMS, Watch
+from topomap.solver import FORMS
 from topomap.statistics import tree
+from topomap.watch import Watch
 
 IDS = [f"{c['environment']}{'-planar' * c['planarity']}" for c in COLUMNS]
 
@@ -56,7 +57,7 @@ def test_clingo_alone_prints_the_count(parts, instance, options, line, form):
 def test_a_column_of_the_table(column, form):
     parts = frozenset(["planar"] if column["planarity"] else [])
     query, figures = Query(parts, column["places"], encoding=form), {}
-    tree(grid(column["instance"]), query, Watch(quiet=True), Journal(), figures)
+    tree(grid(column["instance"]), query, Watch(), Journal(), figures)
     assert not figure4.differences({**column, **figures})
     assert figures["per_step"] == column["expected"]["per_step"]
     assert sum(figures["per_step"]) == figures["nodes"]

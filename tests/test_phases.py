@@ -14,11 +14,12 @@ from topomap.environment import grid, maze, world
 from topomap.experience import Experience, explore
 from topomap.generate import instance
 from topomap.query import Query
-from topomap.solver import FORMS, Program, Stopped, Watch
+from topomap.solver import FORMS, Program
 from topomap.topology import TopologicalMap
+from topomap.watch import Stopped, Watch
 from worlds import WORLDS, random_world, with_marker
 
-QUIET = Watch(quiet=True)
+QUIET = Watch()
 SQUARE = ("closed", "perpendicular")
 MORE = [
     (),

@@ -15,13 +15,13 @@ from topomap.generate import instance
 from topomap.journal import Journal
 from topomap.query import Query
 from topomap.share import crew
-from topomap.solver import Stopped, Watch
 from topomap.statistics import Tally, searched
+from topomap.watch import Stopped, Watch
 from worlds import random_experience
 
 GRID = "instances/grid-3x3-snake.lp"
 SNAKE = "instances/grid-4x4-snake.lp"
-QUIET = Watch(quiet=True)
+QUIET = Watch()
 
 
 def asked(column):
@@ -292,6 +292,6 @@ def test_tallies_keep_the_optimal_ones_of_least_cost():
 
 
 def test_a_search_can_be_stopped():
-    watch = Watch(timeout=0.01, quiet=True)
+    watch = Watch(timeout=0.01)
     with pytest.raises(Stopped, match="timeout"):
         searched(read(ROOT / SNAKE), Query(), watch, Journal())

@@ -23,15 +23,16 @@ from topomap.experience import read
 from topomap.journal import Journal
 from topomap.processes import Processes
 from topomap.query import Query
-from topomap.solver import Stopped, Watch, count, demand_cover, hypotheses
+from topomap.solver import count, demand_cover, hypotheses
 from topomap.statistics import tree
 from topomap.vocabulary import PARTS
+from topomap.watch import Stopped, Watch
 from worlds import random_experience
 
 GRID = str(ROOT / "instances/grid-3x3-snake.lp")
 PAPER = str(ROOT / "instances/grid-3x4-paper.lp")
 SNAKE = str(ROOT / "instances/grid-4x4-snake.lp")
-QUIET = Watch(quiet=True)
+QUIET = Watch()
 
 
 @pytest.fixture(scope="module")
@@ -192,7 +193,7 @@ def test_a_count_can_be_stopped():
     assert count(experience, Query(horizon=20), (), QUIET, grown=False) == (1200, 0)
     begun = time.monotonic()
     with pytest.raises(Stopped, match="timeout"):
-        count(experience, Query(), (), Watch(timeout=1.0, quiet=True))
+        count(experience, Query(), (), Watch(timeout=1.0))
     assert time.monotonic() - begun < 5
     assert count(experience, Query(horizon=20), (), QUIET, grown=False) == (1200, 0)
 
@@ -257,7 +258,7 @@ def test_a_lost_worker_costs_its_unit_only(tmp_path, kind):
 
 def test_what_takes_long_to_send_arrives(crew):
     with crew:
-        done = list(crew.each(lift, range(3), Watch(timeout=30, quiet=True)))
+        done = list(crew.each(lift, range(3), Watch(timeout=30)))
     assert done == [Heavy()] * 3
 
 

@@ -12,7 +12,7 @@ from topomap.experience import explore, read
 from topomap.family import expand
 from topomap.query import Query
 from topomap.simulate import Robot, random_walk, reached
-from topomap.solver import Watch
+from topomap.watch import Watch
 from worlds import random_world
 
 ALL = Query(frozenset())
@@ -22,7 +22,7 @@ MOST = 16
 
 
 def explored(made, start, query=ALL, most=MOST, marker=False):
-    return simulate.simulate(made, start, query, Watch(quiet=True), most, marker)
+    return simulate.simulate(made, start, query, Watch(), most, marker)
 
 
 def worlds(number, seed):
@@ -45,7 +45,7 @@ def ended_as_it_says(made, start, outcome):
     """What the outcome says, held against the search and the world."""
     experience, truth = explore(made, start, routed(made, start, outcome.experience))
     assert experience == outcome.experience
-    best = solver.best(experience, ALL, Watch(quiet=True), search.hypotheses)
+    best = solver.best(experience, ALL, Watch(), search.hypotheses)
     best = sorted(one.at for one in best if one.proved)
     assert [one.at for one in outcome.maps] == best[: simulate.MOST_MAPS]
     maps = [experience.map_of(at) for at in best]
@@ -89,7 +89,7 @@ def test_robots_in_random_worlds_end_as_they_say(number, seed):
 def test_a_robot_knows_nothing_but_what_it_saw():
     """In two worlds that cannot be told apart it goes the same ways."""
     experience = read(ROOT / "instances/grid-3x3-snake.lp")
-    best = solver.best(experience, ALL, Watch(quiet=True))
+    best = solver.best(experience, ALL, Watch())
     first, second = (experience.map_of(one.at) for one in best if one.proved)
     assert not first.isomorphic(second)
     one, other = explored(first, (0, 0)), explored(second, (0, 0))

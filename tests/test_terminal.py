@@ -19,9 +19,9 @@ from topomap.experience import explore
 from topomap.layout import layout, straight
 from topomap.query import Query
 from topomap.scenes import Scene
-from topomap.solver import Watch
 from topomap.terminal import ARROWS, ASCII, BRAILLE, DOTS, LETTERS, text
 from topomap.topology import TopologicalMap
+from topomap.watch import Watch
 
 RIGHT, DOWN, LEFT, UP = range(4)
 STEPS = (0, 1), (1, 0), (0, -1), (-1, 0)
@@ -576,7 +576,7 @@ def test_a_map_of_clingo_is_the_only_one_given_if_clingo_gave_all(tmp_path, argu
 
 def first(file):
     """The first map of a file, as it is shown."""
-    found, fault = scenes.read(str(ROOT / GRID), Query(), Watch(quiet=True), str(file))
+    found, fault = scenes.read(str(ROOT / GRID), Query(), Watch(), str(file))
     assert fault is None
     return found[0]
 

@@ -14,15 +14,16 @@ from typing import Any
 import clingo
 
 from topomap import formats, statements
-from topomap.commands import STOPS, exit_status
 from topomap.experience import Experience, read
 from topomap.files import output
+from topomap.found import Found
 from topomap.options import LARGEST
 from topomap.query import Query
 from topomap.report import map_json, map_line
-from topomap.solver import MEMORY, Found, Program, Watch, calls
+from topomap.solver import Program, calls
 from topomap.statements import Statement
 from topomap.vocabulary import PARTS
+from topomap.watch import Run, Watch
 
 BUDGETS = ("1000", "30000", "umax")  # conflicts: what is hard to settle holds up nothing else
 Literal = tuple[str, bool]  # a term of a statement, and whether it holds
@@ -158,18 +159,14 @@ def ask(args: argparse.Namespace) -> int:
     parts = frozenset(part for part in PARTS if getattr(args, part))
     query = Query(parts, args.bound, args.horizon, args.encoding)
     answers = Answers(asked)
-    fault = None
     with output(args.output) as out:
-        with Watch(args.timeout) as watch:
-            try:
-                answers.settle(experience, query, args.optimal, watch)
-            except STOPS as stop:
-                fault = str(stop) or MEMORY
+        with Run(args.timeout) as run:
+            answers.settle(experience, query, args.optimal, run.watch)
         if args.json:
-            out.write(_json(args, experience, query, answers, fault))
+            out.write(_json(args, experience, query, answers, run.fault))
         else:
-            out.writelines(f"{line}\n" for line in _lines(experience, answers, fault))
-    return exit_status(fault, bool(answers.some))
+            out.writelines(f"{line}\n" for line in _lines(experience, answers, run.fault))
+    return run.status(bool(answers.some))
 
 
 def _lines(experience: Experience, answers: Answers, fault: str | None) -> list[str]:

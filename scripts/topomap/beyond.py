@@ -1,8 +1,6 @@
 """Beyond the paper's table: larger grids, and 4x4 without a bound, by depth-first search. The
 last level of the tree is counted by clingo too, where that ends in time."""
 
-import math
-import time
 from collections.abc import Iterator
 from typing import Any
 
@@ -11,8 +9,8 @@ from topomap.generate import Instance, instance
 from topomap.journal import Journal
 from topomap.query import Query
 from topomap.share import Crew
-from topomap.solver import Stopped, Watch
 from topomap.statistics import final_maps, searched
+from topomap.watch import Stopped, Watch
 
 VERDICT = "Counted by depth-first search, the final maps by clingo too where it finished."
 # rows, columns, most places, planarity
@@ -53,13 +51,10 @@ def _by_clingo(
     for value in journal.known(1):
         return dict(value)
     final: dict[str, int] = {}
-    deadline = watch.deadline
-    watch.deadline = min(deadline or math.inf, time.monotonic() + limit)
     try:
-        final = {"final": final_maps(made.experience, query, watch, crew)}
+        with watch.deadline.earlier(limit):
+            final = {"final": final_maps(made.experience, query, watch, crew)}
     except Stopped:
-        watch.deadline = deadline
         watch.tick()  # raises it again, if it was not for the limit
-    watch.deadline = deadline
     journal.keep(final)
     return final

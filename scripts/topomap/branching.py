@@ -11,10 +11,10 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
 
+from topomap.found import steps_json
 from topomap.hypothesis import Hypothesis
-from topomap.report import steps_json
 from topomap.search import breadth_first
-from topomap.solver import Watch
+from topomap.watch import Watch
 
 
 @dataclass(frozen=True)

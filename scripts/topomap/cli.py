@@ -10,8 +10,9 @@ from functools import cache
 from typing import Any, NoReturn
 
 from topomap import __version__
-from topomap.errors import BAD_INPUT, DONE, INTERRUPTED, PARTIAL, InputError, say
+from topomap.errors import InputError, say
 from topomap.options import EXPORTS, LARGEST, LONGEST_WALK, MOST_COUNTED, MOST_STEPS
+from topomap.status import BAD_INPUT, DONE, INTERRUPTED, PARTIAL
 from topomap.vocabulary import DEMANDS, FORMS, OPTIMIZING, PARTS, PROPERTIES, PRUNING, VOCABULARY
 
 STATUS = """\

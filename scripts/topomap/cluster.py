@@ -13,7 +13,8 @@ from topomap import solver
 from topomap.errors import InputError
 from topomap.extras import need
 from topomap.share import AHEAD, LOST, Result, Unit, Work
-from topomap.solver import INTERRUPT, Stopped, Watch
+from topomap.status import INTERRUPT
+from topomap.watch import Stopped, Watch
 
 PATIENCE = 10  # seconds that a cluster has to answer
 
@@ -99,7 +100,7 @@ class _Wanted(Watch):
     def __init__(self) -> None:
         from distributed import get_worker
 
-        super().__init__(quiet=True)
+        super().__init__()
         self._tasks = get_worker().state.tasks
         self._key = get_worker().get_current_task()
 

@@ -14,25 +14,26 @@ from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any
 
 from topomap import formats
-from topomap.errors import DONE, INTERRUPTED, NO, PARTIAL, InputError, say
+from topomap.errors import InputError, say
 from topomap.experience import Experience, read
 from topomap.files import MOST_BYTES, output, text
 from topomap.folders import ENCODINGS, INSTANCES
+from topomap.found import UNPROVED, Cube, Found
 from topomap.journal import Journal
 from topomap.options import LARGEST, MOST_PLACES
 from topomap.query import Query
 from topomap.share import ALONE, Crew, crew
-from topomap.solver import INTERRUPT, MEMORY, UNPROVED, Cube, Found, Stopped, Watch, Way, best
+from topomap.solver import Way, best
+from topomap.status import DONE, INTERRUPT, exit_status
 from topomap.topology import TopologicalMap
 from topomap.vocabulary import PARTS, PROPERTIES
+from topomap.watch import Attempt, Run, Stopped, Watch, heeding
 
 # What only some subcommands need is loaded by them: most calls are done sooner than it loads.
 if TYPE_CHECKING:
     from topomap.environment import Environment
     from topomap.generate import Instance
     from topomap.report import Report
-
-STOPS = Stopped, MemoryError  # what leaves a partial answer
 
 
 def path(args: argparse.Namespace) -> int:
@@ -44,7 +45,7 @@ def path(args: argparse.Namespace) -> int:
 
 def generate(args: argparse.Namespace) -> int:
     """Explore an environment and write the instance."""
-    from topomap.report import steps_json
+    from topomap.found import steps_json
 
     made = _instance(args)
     target = args.output
@@ -188,30 +189,20 @@ def _solve_one(
     args: argparse.Namespace, experience: Experience, report: "Report", journal: Journal, crew: Crew
 ) -> str | None:
     """Write the maps of an instance; why they may not be all, if so."""
-    fault, candidate = None, None
-    with Watch(args.timeout) as watch:
-        try:
+    candidate = None
+    with heeding(args.timeout) as watch:
+        with Attempt() as attempt:
             for found in _found(args, experience, watch, journal, crew):
                 if not found.proved:
                     candidate = found
                 elif report.count == args.limit:
-                    fault = "limit"
-                    break
+                    raise Stopped("limit")
                 else:
                     report.add(found)
-        except STOPS as stop:
-            fault = str(stop) or MEMORY
-        if fault and candidate and not report.count:
+        if attempt.fault and candidate and not report.count:
             report.add(dataclasses.replace(candidate, kind=UNPROVED))
-        report.end(fault)
-    return fault
-
-
-def exit_status(fault: str | None, yes: bool) -> int:
-    """The exit status of an answer: partial, for that reason, or else yes or no."""
-    if fault:
-        return INTERRUPTED if fault == INTERRUPT else PARTIAL
-    return DONE if yes else NO
+        report.end(attempt.fault)
+    return attempt.fault
 
 
 def _found(
@@ -231,18 +222,17 @@ def _found(
         parts, depth = search.cubes(experience, query)
         done = 0
         known: set[Cube] = set()  # the maps of the part that was cut
-        watch.rest()
-        for value in journal.recorded(len(parts)):
-            watch.tick()
-            if value is None:
-                known.clear()
-                done += 1
-            else:
-                at = tuple((place, slot) for place, slot in value)
-                known.add(at)
-                watch.found += 1
-                yield Found(at, query.kind)
-        watch.go_on()
+        with watch.deadline.waiting():
+            for value in journal.recorded(len(parts)):
+                watch.tick()
+                if value is None:
+                    known.clear()
+                    done += 1
+                else:
+                    at = tuple((place, slot) for place, slot in value)
+                    known.add(at)
+                    watch.found += 1
+                    yield Found(at, query.kind)
         if args.by == "clingo":
             solver.demand_cover(experience, query, watch, parts, depth)
         if crew is ALONE:
@@ -277,7 +267,7 @@ def _numbers(
     """The maps that begin with a cube, as places and gateways in a row: a third of the memory
     that they take as maps."""
     numbers = array("i")
-    for found in way(experience, query, watch or Watch(quiet=True), cubes=[cube]):
+    for found in way(experience, query, watch or Watch(), cubes=[cube]):
         for dstate in found.at if found else ():
             numbers.extend(dstate)
     return numbers
@@ -321,17 +311,14 @@ def check(args: argparse.Namespace) -> int:
     demands = [part for part in PROPERTIES if getattr(args, part)]
     demands += [f"bound({args.bound})"] if args.bound else []
     checked: list[maps.Verdict] = []
-    fault = None
     with output(args.output) as out:
-        try:
-            with Watch(args.timeout) as watch:
-                for verdict in maps.verdicts(experience, documents, demands, truth, args.noise):
-                    checked.append(verdict)
-                    watch.found += 1
-                    if len(checked) < number:
-                        watch.tick()
-        except STOPS as stop:
-            fault = str(stop) or MEMORY
+        with Run(args.timeout) as run:
+            for verdict in maps.verdicts(experience, documents, demands, truth, args.noise):
+                checked.append(verdict)
+                run.watch.found += 1
+                if len(checked) < number:
+                    run.watch.tick()
+        fault = run.fault
         unsound = [verdict for verdict in checked if not verdict.sound]
         short = sum(verdict.short for verdict in checked)
         if args.json:
@@ -363,20 +350,16 @@ def count(args: argparse.Namespace) -> int:
 
     experience = read(args.instance)
     figures: dict[str, Any] = {}
-    fault = None
     with (
         _crew(args) as crew,
         Journal(args.output, _run(args, experience), args.resume) as journal,
         output(args.output) as out,
     ):
-        try:
-            with Watch(args.timeout) as watch:
-                tree(experience, _query(args), watch, journal, figures, crew)
-        except STOPS as stop:
-            fault = str(stop) or MEMORY
-        _write_figures(args, out, figures, fault)
-        journal.complete = not fault
-    return exit_status(fault, bool(figures["final"]))
+        with Run(args.timeout) as run:
+            tree(experience, _query(args), run.watch, journal, figures, crew)
+        _write_figures(args, out, figures, run.fault)
+        journal.complete = not run.fault
+    return run.status(bool(figures["final"]))
 
 
 def search_tree(args: argparse.Namespace) -> int:
@@ -390,15 +373,12 @@ def search_tree(args: argparse.Namespace) -> int:
         return _best_first(args, experience, query)
     node = search.root(experience, query)
     tally = Tally(node.experience.steps)
-    fault = None
     with output(args.output) as out:
-        try:
-            with Watch(args.timeout) as watch:
-                for _ in search.ORDERS[args.order](node, watch):
-                    tally.add(node)
-                    watch.found = tally.per_step[-1]
-        except STOPS as stop:
-            fault = str(stop) or MEMORY
+        with Run(args.timeout) as run:
+            for _ in search.ORDERS[args.order](node, run.watch):
+                tally.add(node)
+                run.watch.found = tally.per_step[-1]
+        fault = run.fault
         figures = tally.figures()
         if fault and args.order == "breadth":  # in the midst of the last level with a node
             whole = sum(map(bool, tally.per_step)) - 1
@@ -415,20 +395,17 @@ def _best_first(args: argparse.Namespace, experience: Experience, query: Query) 
     from topomap import maps, search
     from topomap.report import Report
 
-    fault = None
     nodes = 0
-    with output(args.output) as out, Watch(args.timeout) as watch:
+    with output(args.output) as out:
         report = Report(out, args.instance, experience, query, maps.BEST_FIRST, None, args.json)
-        try:
-            for node in search.best_first(search.root(experience, query), watch):
+        with Run(args.timeout) as run:
+            for node in search.best_first(search.root(experience, query), run.watch):
                 nodes += 1
                 if node.steps == node.experience.steps and node.closed():
                     report.add(Found(node.dstates, maps.BEST_FIRST, node.cost, proved=False))
                     break
-        except STOPS as stop:
-            fault = str(stop) or MEMORY
-        report.end(fault, nodes=nodes)
-    return exit_status(fault, bool(report.count))
+        report.end(run.fault, nodes=nodes)
+    return run.status(bool(report.count))
 
 
 def _write_figures(
@@ -463,27 +440,23 @@ def branching_nodes(args: argparse.Namespace) -> int:
     experience = read(args.instance)
     query = _query(args).having("planar")
     summary = branching.Summary()
-    fault = None
     with output(args.output) as out:
         if args.json:
             head = formats.headed({"instance": args.instance})
             out.write(json.dumps(head)[:-1] + ', "nodes": [')
-        try:
-            with Watch(args.timeout) as watch:
-                for node in branching.branching(search.root(experience, query), watch):
-                    if args.json:
-                        out.write(",\n" * (watch.found > 1) + json.dumps(node.json()))
-                    summary.add(node)
-        except STOPS as stop:
-            fault = str(stop) or MEMORY
+        with Run(args.timeout) as run:
+            for node in branching.branching(search.root(experience, query), run.watch):
+                if args.json:
+                    out.write(",\n" * (run.watch.found > 1) + json.dumps(node.json()))
+                summary.add(node)
         if args.json:
-            tail = {"summary": summary.totals, **formats.ended(fault)}
+            tail = {"summary": summary.totals, **formats.ended(run.fault)}
             out.write("], " + json.dumps(tail)[1:] + "\n")
         else:
             out.write(branching.text(summary.totals))
-            if fault:
-                out.write(f"partial: {fault}; the figures are of the nodes met until then\n")
-    return exit_status(fault, summary.holds)
+            if run.fault:
+                out.write(f"partial: {run.fault}; the figures are of the nodes met until then\n")
+    return run.status(summary.holds)
 
 
 def table(args: argparse.Namespace) -> int:
@@ -495,28 +468,30 @@ def table(args: argparse.Namespace) -> int:
     jobs = args.jobs or os.cpu_count() or 1
     columns = len(beyond.COLUMNS if args.beyond else figure4.COLUMNS)
     rows: list[dict[str, Any]] = []
-    fault = None
     if args.resume and not args.beyond:
         raise InputError("topomap table: --resume goes with --beyond")
-    try:
-        with output(path, parents=True) as file, contextlib.ExitStack() as stack:
-            if args.beyond:
-                run = {"command": name, "columns": beyond.COLUMNS}
-                journal = stack.enter_context(Journal(path, run, args.resume))
-                watch = stack.enter_context(Watch(args.timeout))
-                workers = stack.enter_context(crew(jobs))
-                counted = beyond.rows(workers, watch, journal)
-            else:
-                journal = Journal()
-                counted = figure4.rows(jobs, args.timeout)
-            for row in counted:
-                rows = sorted([*rows, row], key=lambda row: (row["environment"], row["planarity"]))
-                say(f"counted {len(rows)} of {columns} columns")
-            json.dump(formats.answer({"rows": rows}), file, indent=1)
-            file.write("\n")
-            journal.complete = True
-    except STOPS as stop:  # the file keeps an older, complete table
-        fault = str(stop) or MEMORY
+    with (
+        Attempt() as attempt,  # if it is cut, the file keeps an older, complete table
+        output(path, parents=True) as file,
+        contextlib.ExitStack() as stack,
+    ):
+        if args.beyond:
+            run = {"command": name, "columns": beyond.COLUMNS}
+            journal = stack.enter_context(Journal(path, run, args.resume))
+            watch = stack.enter_context(heeding(args.timeout))
+            workers = stack.enter_context(crew(jobs))
+            counted = beyond.rows(workers, watch, journal)
+        else:
+            journal = Journal()
+            watch = stack.enter_context(heeding(args.timeout))
+            counted = figure4.rows(jobs, watch)
+        for row in counted:
+            rows = sorted([*rows, row], key=lambda row: (row["environment"], row["planarity"]))
+            say(f"counted {len(rows)} of {columns} columns")
+        json.dump(formats.answer({"rows": rows}), file, indent=1)
+        file.write("\n")
+        journal.complete = True
+    fault = attempt.fault
     different = [cell for row in rows for cell in figure4.differences(row)]
     if args.json:
         print(formats.line({"rows": rows}, fault), end="")

@@ -1,9 +1,7 @@
-"""What ends a command, and the exit status it ends with."""
+"""Bad input, and messages of one line."""
 
 import contextlib
 import sys
-
-DONE, NO, BAD_INPUT, PARTIAL, INTERRUPTED = 0, 1, 2, 3, 130
 
 
 class InputError(Exception):

@@ -17,9 +17,9 @@ from typing import Any
 import clingo
 
 from topomap import formats, statements
-from topomap.commands import STOPS, exit_status
 from topomap.experience import DState, Experience, read
 from topomap.files import output
+from topomap.found import Found, steps_json
 from topomap.options import LARGEST
 from topomap.query import Query
 from topomap.reasons import (
@@ -33,10 +33,12 @@ from topomap.reasons import (
     told_plainly,
     told_views,
 )
-from topomap.report import map_line, steps_json
-from topomap.solver import INTERRUPT, MEMORY, Found, Program, Stopped, Watch, calls, forget
+from topomap.report import map_line
+from topomap.solver import Program, calls, forget
 from topomap.statements import Statement
+from topomap.status import INTERRUPT
 from topomap.vocabulary import DEMANDS
+from topomap.watch import Run, Stopped, Watch
 
 LATE = {"closed", "travelled"}  # what a map may lack after a step and have after a later one
 LASTING = ("same", "at")  # relations of which later steps tell nothing new
@@ -399,18 +401,14 @@ def explain(args: argparse.Namespace) -> int:
         statement = statements.parse(args.statement, experience, args.command)
     query = Query(frozenset(part for part in DEMANDS if getattr(args, part)), args.bound)
     answer = Answer()
-    fault = None
     with output(args.output) as out:
-        with Watch(args.timeout) as watch:
-            try:
-                Explainer(experience, query, statement, watch, answer).settle()
-            except STOPS as stop:
-                fault = str(stop) or MEMORY
+        with Run(args.timeout) as run:
+            Explainer(experience, query, statement, run.watch, answer).settle()
         if args.json:
-            out.write(_json(args, experience, statement, answer, fault))
+            out.write(_json(args, experience, statement, answer, run.fault))
         else:
-            out.writelines(f"{line}\n" for line in _lines(experience, statement, answer, fault))
-    return exit_status(fault, answer.verdict != "open")
+            out.writelines(f"{line}\n" for line in _lines(experience, statement, answer, run.fault))
+    return run.status(answer.verdict != "open")
 
 
 VERDICTS = {

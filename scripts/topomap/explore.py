@@ -18,8 +18,8 @@ from topomap.bisimulation import Chart
 from topomap.experience import DState, Experience
 from topomap.folders import ENCODINGS
 from topomap.options import LONGEST_WALK
-from topomap.solver import MEMORY, Stopped, Watch
 from topomap.topology import Gateway, Place, TopologicalMap
+from topomap.watch import Attempt, Watch
 
 LIMITS = ("steps", "effort", "maps")  # why a plan may not be the best one, but for lack of time
 MOST_CLASSES = 60  # that are told apart at once
@@ -528,13 +528,12 @@ def plan(
     if len({_look(one.world, one.dstate, one.marker) for one in among}) != 1:
         raise ValueError("no maps, or what is seen now differs")
     planner = _Planner(slots, among, watch, marker, steps)
-    try:
+    with Attempt() as attempt:
         planner.part()
         planner.choose()
         if proofs:
             planner.prove()
-    except (Stopped, MemoryError) as stop:
-        planner.fault = str(stop) or MEMORY
+    planner.fault = attempt.fault or planner.fault
     return planner.plan()
 
 

@@ -9,16 +9,16 @@ from typing import IO, Any
 
 from topomap import bisimulation, check, files, formats, maps, scenes, solver, words
 from topomap.bisimulation import Chart, Pair
-from topomap.commands import exit_status
-from topomap.errors import NO, InputError, printable, say
+from topomap.errors import InputError, printable, say
 from topomap.experience import DState, Experience, read
 from topomap.explore import Plan, Prediction, Untold, plan, standing
+from topomap.found import steps_json
 from topomap.options import LARGEST
 from topomap.query import Query
-from topomap.report import steps_json
-from topomap.solver import MEMORY, Stopped, Watch
+from topomap.status import NO, exit_status
 from topomap.topology import gid
 from topomap.vocabulary import PARTS
+from topomap.watch import Attempt, Watch, heeding
 
 At = tuple[DState, ...]
 KINDS = {
@@ -52,7 +52,7 @@ def explore(args: argparse.Namespace) -> int:
         return _check(args, experience)
     with (
         files.output(args.output) as out,
-        Watch(args.timeout) as watch,
+        heeding(args.timeout) as watch,
     ):
         among, fault = _among(args, whole, experience, watch)
         if not among:
@@ -96,17 +96,16 @@ def _among(
                 found.setdefault(at, name)
         elif fault is None:
             watch.title(f"{name} maps")
-            try:
-                if name == "optimal":
-                    best, fault = scenes.best(whole, args.instance, query, watch)
-                    for scene in best:
-                        found.setdefault(tuple(scene.at), scene.kind)
-                    continue
+            if name == "optimal":
+                best, fault = scenes.best(whole, args.instance, query, watch)
+                for scene in best:
+                    found.setdefault(tuple(scene.at), scene.kind)
+                continue
+            with Attempt() as attempt:
                 for one in solver.hypotheses(whole, query.having(*KINDS[name]), watch):
                     if one is not None:
                         found.setdefault(one.at, name)
-            except (Stopped, MemoryError) as stop:
-                fault = str(stop) or MEMORY
+            fault = attempt.fault
     return [Asked(at, of) for at, of in sorted(found.items())], fault
 
 

@@ -14,9 +14,10 @@ import clingo
 from topomap import formats, maps, nx
 from topomap.errors import InputError, printable
 from topomap.files import data
+from topomap.found import steps_json
 from topomap.network import read_graphml
 from topomap.options import EXPORTS
-from topomap.report import map_json, steps_json
+from topomap.report import map_json
 from topomap.scenes import Scene, of_document
 from topomap.topology import Gateway, Place, gid
 

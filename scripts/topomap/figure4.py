@@ -11,8 +11,8 @@ from topomap.experience import read
 from topomap.folders import INSTANCES
 from topomap.journal import Journal
 from topomap.query import Query
-from topomap.solver import Watch
 from topomap.statistics import KEYS, tree
+from topomap.watch import Watch
 
 COLUMNS: list[dict[str, Any]] = json.loads(
     Path(__file__).with_name("figure4.json").read_text(encoding="utf-8")
@@ -44,10 +44,10 @@ def row(column: dict[str, Any], watch: Watch) -> dict[str, Any]:
     }
 
 
-def rows(jobs: int, timeout: float | None = None) -> Iterator[dict[str, Any]]:
+def rows(jobs: int, watch: Watch) -> Iterator[dict[str, Any]]:
     """The rows of the table, each as soon as it is counted; the largest begin first.
-    Raises Stopped past a time limit in seconds, and when interrupted."""
-    with ThreadPoolExecutor(jobs) as pool, Watch(timeout, quiet=True) as watch:
+    Raises Stopped past the time limit, and when interrupted."""
+    with ThreadPoolExecutor(jobs) as pool:
         pending = [pool.submit(row, column, watch) for column in reversed(COLUMNS)]
         for done in as_completed(pending):
             yield done.result()

@@ -20,7 +20,7 @@ from topomap.experience import Experience, read
 from topomap.generate import instance
 from topomap.query import Query
 from topomap.scenes import Scene
-from topomap.solver import Stopped, Watch
+from topomap.watch import Stopped, Watch
 
 WALKS = ("#c2332d", "#2f7fc1", "#2e7d4f", "#e07b00", "#7a4fa3")
 BLUE, ORANGE = "#2f7fc1", "#e07b00"

@@ -20,7 +20,7 @@ from typing import Any
 import clingo
 
 from topomap import formats, words
-from topomap.errors import DONE, NO, PARTIAL, InputError, of_file, say
+from topomap.errors import InputError, of_file, say
 from topomap.experience import (
     MARKER,
     SIGNATURES,
@@ -32,10 +32,12 @@ from topomap.experience import (
     slots_fault,
 )
 from topomap.explore import LIMITS, plan, standing
+from topomap.found import Found, steps_json
 from topomap.online import Certain, Follower, Status
 from topomap.options import LARGEST
-from topomap.report import map_line, steps_json
-from topomap.solver import INTERRUPT, Found, Stopped, Watch
+from topomap.report import map_line
+from topomap.status import DONE, INTERRUPT, NO, PARTIAL
+from topomap.watch import Stopped, Watch, heeding
 
 KNOWN = {**SIGNATURES, "undo": "undo(N)"}  # of which undo is a line by itself
 LONGEST = 2**20  # bytes of a line
@@ -401,7 +403,7 @@ class Following:
     def tell(self, begun: float) -> None:
         """Print what is known now."""
         assert self.follower is not None
-        with Watch(self.args.timeout) as watch:
+        with heeding(self.args.timeout) as watch:
             status = self.follower.status(watch)
             before = self.certain[-1] if self.certain else Certain()
             following, fault = None, status.fault
@@ -533,7 +535,7 @@ def follow(args: argparse.Namespace) -> int:
     following = Following(args)
     log = Log(args.log) if args.log is not None else None
     source = "standard input" if args.file == "-" else args.file
-    with Watch(quiet=True) as outer:
+    with heeding(quiet=True) as outer:
         coming = lines(args.file, args.wait, outer.tick)
         try:
             if log:

@@ -18,8 +18,9 @@ from topomap.check import STEP_RULES, At, Grown, Violation, by_definition, by_ru
 from topomap.errors import InputError
 from topomap.experience import DState, Experience, Misread
 from topomap.files import text
+from topomap.found import UNPROVED
 from topomap.options import LARGEST
-from topomap.solver import UNPROVED, misreadings
+from topomap.solver import misreadings
 from topomap.topology import Gateway, TopologicalMap
 from topomap.vocabulary import PARTS, PROPERTIES
 

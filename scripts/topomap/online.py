@@ -19,8 +19,8 @@ from topomap.hypothesis import Hypothesis
 from topomap.options import MOST_COUNTED
 from topomap.query import Query
 from topomap.search import OFTEN, root
-from topomap.solver import MEMORY, Stopped, Watch
 from topomap.topology import Gateway
+from topomap.watch import MEMORY, Stopped, Watch
 
 TRIED = 10  # times as many nodes are visited to tell that there are more
 MAPS = 100  # best maps that are kept

@@ -16,21 +16,22 @@ import clingo
 
 from topomap import __version__, experience, maps, scenes, solver, svg, words
 from topomap.agreement import Agreement
-from topomap.commands import exit_status
 from topomap.errors import InputError, printable, say
 from topomap.experience import Experience
 from topomap.exploring import hypothesis
 from topomap.extras import need
 from topomap.files import output
+from topomap.found import Cube
 from topomap.options import LARGEST
 from topomap.pictures import ready
 from topomap.query import Query
 from topomap.replay import MOST, SHOWN, Step, fate, in_force, replay
 from topomap.scenes import MOST_PLACES, Scene
-from topomap.solver import INTERRUPT, MEMORY, Cube, Stopped, Watch
+from topomap.status import INTERRUPT, exit_status
 from topomap.svg import Drawing, part_of
 from topomap.topology import gid
 from topomap.vocabulary import PARTS, PRUNING
+from topomap.watch import Attempt, Watch, heeding
 
 FOLDER = Path(__file__).parent
 SMALL = 100  # places in a small picture, at most
@@ -47,7 +48,7 @@ def report(args: argparse.Namespace) -> int:
     parts = frozenset(part for part in PRUNING if getattr(args, part))
     query = Query(parts, args.bound, args.horizon)
     given = None if args.maps_from is None else _given(args, seen, query)
-    with output(args.output) as out, Watch(args.timeout) as watch:
+    with output(args.output) as out, heeding(args.timeout) as watch:
         end = time.monotonic() + args.timeout
         made = []
         for number, (path, one) in enumerate(seen):
@@ -123,30 +124,30 @@ class Exploration:
     def look(self, seconds: float) -> None:
         """Find out what can be found in that time: no part of the work takes it all."""
         now = time.monotonic()
-        self.watch.deadline = now + seconds / 3
+        self.watch.deadline.at = now + seconds / 3
         if not self.given:
             self.best, fault = scenes.best(self.seen, self.name, self.query, self.watch)
             self.whole = not fault
             if fault:
                 self.faults.append(f"the best maps: {fault}")
-        self.watch.deadline = now + seconds / 2
+        self.watch.deadline.at = now + seconds / 2
         ats = [tuple(scene.at) for scene in self.best]
         self.steps, fault = replay(self.seen, self.query, ats, self.watch)
         if fault:
             self.faults.append(f"what was refused: {fault}")
-        self.watch.deadline = now + seconds * 2 / 3
+        self.watch.deadline.at = now + seconds * 2 / 3
         self._until("pictures", self._draw())
-        self.watch.deadline = now + seconds
+        self.watch.deadline.at = now + seconds
         self._until("counts by clingo", self._count())
         self.watch.title("")
 
     def _until(self, what: str, work: Iterator[None]) -> None:
-        try:
+        with Attempt() as attempt:
             self.watch.tick()
             for _ in work:
                 self.watch.tick()
-        except (Stopped, MemoryError) as stop:
-            self.faults.append(f"{what}: {str(stop) or MEMORY}")
+        if attempt.fault:
+            self.faults.append(f"{what}: {attempt.fault}")
 
     def _count(self) -> Iterator[None]:
         """Count the hypotheses after each step, by clingo."""

@@ -8,15 +8,15 @@ import sys
 from pathlib import Path
 
 from topomap import exports, scenes, words
-from topomap.commands import exit_status
-from topomap.errors import DONE, INTERRUPTED, InputError, say
+from topomap.errors import InputError, say
 from topomap.extras import need
 from topomap.files import output
 from topomap.folders import INSTANCES
 from topomap.query import Query
 from topomap.scenes import Scene
-from topomap.solver import Stopped, Watch
+from topomap.status import DONE, INTERRUPTED, exit_status
 from topomap.vocabulary import PARTS
+from topomap.watch import Stopped, heeding
 
 FORMATS = ("svg", "png", "pdf")
 LEAST, MOST = 20, 100  # columns of a terminal
@@ -94,7 +94,7 @@ def import_(args: argparse.Namespace) -> int:
 def _scene(args: argparse.Namespace) -> tuple[Scene | None, int]:
     """The map that is asked for, and the exit status: partial, if it may not be the best."""
     parts = frozenset(part for part in PARTS if getattr(args, part, False))
-    with Watch(args.timeout) as watch:
+    with heeding(args.timeout) as watch:
         query = Query(parts, args.bound, args.horizon)
         found, fault = scenes.read(args.file, query, watch, args.given)
     number = args.map or 1
@@ -117,7 +117,7 @@ def figures(args: argparse.Namespace) -> int:
     from topomap.figures import figures
 
     folder = Path(args.directory)
-    with Watch() as watch:
+    with heeding() as watch:
         made = figures(Path(args.instances or INSTANCES), watch)
         chosen = args.figure or list(made)
         for name in chosen:

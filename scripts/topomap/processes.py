@@ -10,7 +10,7 @@ from multiprocessing.process import BaseProcess
 from typing import Any
 
 from topomap.share import AHEAD, LOST, Result, Unit, Work
-from topomap.solver import MEMORY, Stopped, Watch
+from topomap.watch import MEMORY, Stopped, Watch
 
 TRIES = 3  # workers that a unit may cost
 

@@ -8,10 +8,11 @@ from dataclasses import dataclass, field
 
 from topomap import search
 from topomap.experience import Experience
+from topomap.found import Cube
 from topomap.hypothesis import RULES, Hypothesis
 from topomap.query import Query
-from topomap.solver import MEMORY, Cube, Stopped, Watch
 from topomap.topology import Gateway
+from topomap.watch import Attempt, Watch
 
 MOST = 20_000  # hypotheses of a step that are all looked at
 KEPT = 500  # of more of them: these, the first by the order
@@ -49,16 +50,13 @@ def replay(
     node = search.root(experience, query)
     steps = [Step() for _ in range(node.experience.steps + 1)]
     first: list[list[Cube]] = [[] for _ in steps]
-    fault = None
-    try:
+    with Attempt() as attempt:
         _walk(node, steps, first, watch)
-    except (Stopped, MemoryError) as stop:
-        fault = str(stop) or MEMORY
     later: Iterable[Cube] = best
     for step in range(len(steps) - 1, -1, -1):
         begun = list(dict.fromkeys(at[: step + 1] for at in later))[:BEGUN]
         steps[step].shown = later = list(dict.fromkeys([*begun, *first[step]]))[:SHOWN]
-    return steps, fault
+    return steps, attempt.fault
 
 
 def _walk(node: Hypothesis, steps: list[Step], first: list[list[Cube]], watch: Watch) -> None:

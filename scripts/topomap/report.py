@@ -6,14 +6,9 @@ from typing import IO, Any
 
 from topomap import formats, words
 from topomap.experience import Experience, Misread
+from topomap.found import UNPROVED, Found, steps_json
 from topomap.query import Query
-from topomap.solver import UNPROVED, Found
 from topomap.topology import Gateway, TopologicalMap
-
-
-def steps_json(at: Sequence[Gateway]) -> list[list[int]]:
-    """The dstate after each step, ``[[T,P,S], ...]``."""
-    return [[step, place, slot] for step, (place, slot) in enumerate(at)]
 
 
 def map_json(world: TopologicalMap, at: Sequence[Gateway]) -> dict[str, Any]:

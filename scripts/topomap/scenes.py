@@ -12,10 +12,11 @@ from topomap.check import STEP_RULES
 from topomap.errors import InputError, printable
 from topomap.experience import MOST_SLOTS, Experience, parse
 from topomap.files import text
+from topomap.found import UNPROVED, Found
 from topomap.options import LARGEST
 from topomap.query import Query
-from topomap.solver import MEMORY, UNPROVED, Found, Stopped, Watch
 from topomap.topology import Gateway, TopologicalMap
+from topomap.watch import Attempt, Watch
 from topomap.words import markers, short
 
 MOST_PLACES = 1000  # in a picture
@@ -144,24 +145,21 @@ def best(
 ) -> tuple[list[Scene], str | None]:
     """The optimal maps, or the best so far, in order; and why they may not be all, if so."""
     found: list[Found] = []
-    fault = None
-    try:
+    with Attempt() as attempt:
         for one in filter(None, solver.best(experience, query, watch, solver.hypotheses)):
             if not (one.proved and found and found[0].proved):  # better than those before
                 found.clear()
             found.append(one)
-    except (Stopped, MemoryError) as stop:
-        fault = str(stop) or MEMORY
     found.sort(key=lambda one: one.at)
     kinds = [one.kind if one.proved else UNPROVED for one in found]
     return [
         Scene(
             *(experience.map_of(one.at), one.at, name, number, len(found), kind),
-            whole=not fault,
+            whole=not attempt.fault,
             marker=markers(experience, one.at),
         )
         for number, (one, kind) in enumerate(zip(found, kinds, strict=True), 1)
-    ], fault
+    ], attempt.fault
 
 
 def of_document(document: maps.Document) -> list[Scene]:

@@ -11,10 +11,11 @@ from itertools import groupby
 from operator import itemgetter
 
 from topomap.experience import Experience
+from topomap.found import Cube, Found
 from topomap.hypothesis import Hypothesis
 from topomap.query import Query
-from topomap.solver import Cube, Found, Watch
 from topomap.vocabulary import PRUNING
+from topomap.watch import Watch
 
 OFTEN = 500  # nodes between two looks at the clock
 

@@ -4,7 +4,7 @@ the order of the units, whoever has done them."""
 from collections.abc import Callable, Iterator, Sequence
 from typing import Protocol, TypeVar
 
-from topomap.solver import Watch
+from topomap.watch import Watch
 
 Unit = TypeVar("Unit")
 Result = TypeVar("Result")

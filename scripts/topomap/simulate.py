@@ -16,9 +16,10 @@ from topomap.errors import InputError
 from topomap.experience import Experience
 from topomap.experience import explore as experienced
 from topomap.explore import Prediction
+from topomap.found import Found
 from topomap.query import Query
-from topomap.solver import MEMORY, Found, Stopped, Watch
 from topomap.topology import Gateway, Place, TopologicalMap
+from topomap.watch import Attempt, Watch
 
 MOST_MAPS = 100  # best maps of which a walk is planned, while none is closed
 WALKS = 101  # random walks, of which the median is told
@@ -146,13 +147,13 @@ def simulate(
     robot = Robot(world, start)
     maps: list[Found] = []
     end = ""
-    try:
+    with Attempt() as attempt:
         while not end:
             watch.phase(f"step {len(robot.route)}")
             maps = best(robot.experience(), query, watch)
             end = _go_on(robot, maps, watch, most, marker)
-    except (Stopped, MemoryError) as stop:
-        end = str(stop) or MEMORY
+    if attempt.fault:
+        end = attempt.fault
         maps = [one for one in maps if len(one.at) == len(robot.route) + 1]
     tour = len(route.tour(world, start[0]))
     walked = random_walk(world, start[0])

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from topomap import formats
-from topomap.commands import environment_of, exit_status
+from topomap.commands import environment_of
 from topomap.environment import Environment
 from topomap.errors import InputError
 from topomap.family import expand
@@ -16,9 +16,10 @@ from topomap.options import MOST_STEPS
 from topomap.query import Query
 from topomap.simulate import ENDED, MOST_MAPS, Outcome, reached
 from topomap.simulate import simulate as explored
-from topomap.solver import Watch
+from topomap.status import exit_status
 from topomap.topology import Gateway, TopologicalMap, label
 from topomap.vocabulary import PARTS
+from topomap.watch import Watch, heeding
 from topomap.words import number
 
 STEPS = 20  # for each way
@@ -38,7 +39,7 @@ def simulate(args: argparse.Namespace) -> int:
     with contextlib.ExitStack() as files:
         out = files.enter_context(output(args.output))
         instance = args.instance and files.enter_context(output(args.instance))
-        with Watch(args.timeout) as watch:
+        with heeding(args.timeout) as watch:
             watch.title(environment.name)
             outcome = _explored(args, world, start, watch)
         if instance:
@@ -119,7 +120,7 @@ def _list(args: argparse.Namespace) -> int:
     rows: list[dict[str, Any]] = []
     fault = None
     with output(args.output) as out:
-        with Watch(args.timeout) as watch:
+        with heeding(args.timeout) as watch:
             for call, parsed in calls:
                 watch.title(call)
                 _, world, start = _world(parsed)

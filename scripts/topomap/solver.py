@@ -9,12 +9,11 @@ import contextlib
 import hashlib
 import os
 import queue
-import signal
 import threading
 import time
 import weakref
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cache, partial
 from operator import itemgetter
 from typing import Any, ClassVar, TypeVar
@@ -23,24 +22,18 @@ import clingo
 
 from topomap import __version__, phases
 from topomap.errors import InputError
-from topomap.experience import DState, Experience, Misread
+from topomap.experience import Experience, Misread
 from topomap.folders import ENCODINGS
-from topomap.progress import Progress
+from topomap.found import Cube, Found
 from topomap.query import Query
+from topomap.status import INTERRUPT
 from topomap.vocabulary import PRUNING
+from topomap.watch import MEMORY, Stopped, Watch
 
 FORMS = {"fast": ENCODINGS / "fast", "plain": ENCODINGS}
 
 Answer = TypeVar("Answer")
-Cube = tuple[DState, ...]  # the first dstates of a hypothesis
 AHEAD = 1000  # answers that wait to be taken, at most
-INTERRUPT = "interrupted"
-MEMORY = "out of memory"
-SIGNALS = (signal.SIGINT, signal.SIGTERM)
-
-
-class Stopped(Exception):
-    """The search ended before all was found; the message says why."""
 
 
 def control(
@@ -66,50 +59,6 @@ def control(
         made.load(str(path))
     made.add("base", [], facts)
     return made
-
-
-class Watch:
-    """A time limit in seconds, Ctrl-C, and a progress line on stderr when it takes long.
-
-    As a context it takes SIGINT and SIGTERM, so that a search ends between two answers.
-    """
-
-    def __init__(self, timeout: float | None = None, quiet: bool = False):
-        self.found = 0
-        self.signal = False
-        self.deadline = None if timeout is None else time.monotonic() + timeout
-        self.progress = Progress(quiet)
-        self.title, self.phase = self.progress.title, self.progress.phase
-
-    def rest(self) -> None:
-        """Let the time limit wait."""
-        self.left = None if self.deadline is None else self.deadline - time.monotonic()
-        self.deadline = None
-
-    def go_on(self) -> None:
-        """Let it run again."""
-        self.deadline = None if self.left is None else time.monotonic() + self.left
-
-    def tick(self) -> None:
-        """Show progress; raises Stopped past the time limit and after a signal."""
-        self.progress.show(self.found)
-        if self.signal:
-            raise Stopped(INTERRUPT)
-        if self.deadline is not None and time.monotonic() > self.deadline:
-            raise Stopped("timeout")
-
-    def __enter__(self) -> "Watch":
-        def note(*_: object) -> None:
-            self.signal = True
-
-        heeded = [number for number in SIGNALS if signal.getsignal(number) != signal.SIG_IGN]
-        self.handlers = [(number, signal.signal(number, note)) for number in heeded]
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        for number, handler in self.handlers:
-            signal.signal(number, handler)
-        self.progress.close()
 
 
 class Program:
@@ -378,22 +327,6 @@ def _prepare() -> None:
     memory it cannot, and aborts."""
     with contextlib.suppress(RuntimeError):
         clingo.parse_term("", logger=lambda *_: None)
-
-
-UNPROVED = "not proved to be best"  # the kind of a map of which it is open whether it is
-
-
-@dataclass(frozen=True)
-class Found:
-    """A hypothesis: the dstate after each step, of what kind it is, and if the query
-    minimises, its costs, most important first, and whether they are proved least; and what
-    was misread."""
-
-    at: tuple[DState, ...]
-    kind: str
-    cost: tuple[int, ...] = ()
-    proved: bool = True
-    misread: tuple[Misread, ...] = ()
 
 
 def misreadings(terms: Iterable[Sequence[clingo.Symbol]]) -> tuple[Misread, ...]:

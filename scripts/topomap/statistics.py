@@ -8,12 +8,14 @@ from typing import Any
 
 from topomap import search
 from topomap.experience import Experience
+from topomap.found import Cube
 from topomap.hypothesis import Hypothesis
 from topomap.journal import Journal
 from topomap.query import Query
 from topomap.share import ALONE, Crew
-from topomap.solver import Cube, Watch, count, demand_cover
+from topomap.solver import count, demand_cover
 from topomap.vocabulary import PRUNING
+from topomap.watch import Watch
 
 LARGE = 10_000  # a tree with a level of more hypotheses is counted cube by cube
 KEYS = ("nodes", "maps_built", "final", "closed", "closed_text", "optimal", "perpendicular")

@@ -18,8 +18,9 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
-from topomap.errors import BAD_INPUT, DONE, INTERRUPTED, NO, InputError, say
+from topomap.errors import InputError, say
 from topomap.files import output
+from topomap.status import BAD_INPUT, DONE, INTERRUPTED, NO
 
 from bench import growth, jobs, measure, memory, report, rows
 from bench.rows import ROOT, WAYS

@@ -8,8 +8,8 @@ from topomap.environment import grid
 from topomap.generate import instance
 from topomap.journal import Journal
 from topomap.query import Query
-from topomap.solver import Watch
 from topomap.statistics import tree
+from topomap.watch import Watch
 
 TASKS = {
     "5x5, planar, at most 25 places, 26 steps": ((5, 5), Query(frozenset(["planar"]), 25, 26)),
@@ -29,7 +29,7 @@ def speedup(jobs: int) -> list[dict[str, Any]]:
             figures.append({})
             begun = time.perf_counter()
             with share.crew(number) as crew:
-                tree(experience, query, Watch(quiet=True), Journal(), figures[-1], crew)
+                tree(experience, query, Watch(), Journal(), figures[-1], crew)
             seconds.append(time.perf_counter() - begun)
         rows.append(
             {

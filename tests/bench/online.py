@@ -18,7 +18,7 @@ from topomap.experience import Experience, read
 from topomap.files import output
 from topomap.online import Follower
 from topomap.query import Query
-from topomap.solver import Stopped, Watch
+from topomap.watch import Stopped, Watch
 
 ROOT = Path(__file__).resolve().parents[2]
 RUNS = [
@@ -61,7 +61,7 @@ def from_scratch(
 ) -> tuple[int, list[online.DState], int]:
     """The number of hypotheses, the best maps, and the ground rules of the count."""
     solver.forget()
-    watch = Watch(seconds, quiet=True)
+    watch = Watch(seconds)
     number, _ = solver.count(experience, query, watch=watch, grown=False)
     program = solver._last.program
     rules = int(program.control.statistics["problem"]["lp"]["rules"]) if program else 0
@@ -85,7 +85,7 @@ def measured(name: str, planar: bool, places: int | None, limit: float) -> Itera
             follower.step(experience.turns[step - 1], view, landmarks)
         else:
             follower = Follower(experience.slots, *start, planar, places)
-        status = follower.status(Watch(quiet=True))
+        status = follower.status(Watch())
         done = time.process_time()
         try:
             number, best, scratch = from_scratch(experience.cut(step), query, limit)

@@ -24,8 +24,8 @@ from topomap.experience import DState, Experience, read
 from topomap.hypothesis import Hypothesis
 from topomap.journal import Journal
 from topomap.query import Query
-from topomap.solver import Watch
 from topomap.statistics import Tally, tree
+from topomap.watch import Stopped, Watch
 
 At = tuple[DState, ...]
 
@@ -81,14 +81,14 @@ def counted(task: Task) -> int:
 
 def listed(task: Task) -> int:
     """All maps, as ``topomap solve`` has them."""
-    found = solver.hypotheses(task.experience, task.query, Watch(quiet=True))
+    found = solver.hypotheses(task.experience, task.query, Watch())
     task.found = [one.at for one in found if one]
     return len(task.found)
 
 
 def one(task: Task) -> int:
     """The first map."""
-    first = next(solver.hypotheses(task.experience, task.query, Watch(quiet=True)), None)
+    first = next(solver.hypotheses(task.experience, task.query, Watch()), None)
     task.found = [first.at] if first else []
     return len(task.found)
 
@@ -98,7 +98,7 @@ def table(task: Task) -> int:
     differences = 0
     for column, experience, query in _columns(task.query.encoding):
         figures: dict[str, Any] = {}
-        tree(experience, query, Watch(quiet=True), Journal(), figures)
+        tree(experience, query, Watch(), Journal(), figures)
         differences += len(figure4.differences(column | figures))
     return differences
 
@@ -208,7 +208,7 @@ def main() -> None:
     begun, used = time.perf_counter(), time.process_time()
     try:
         number = WAYS[way][task.ask](task)
-    except (MemoryError, solver.Stopped):
+    except (MemoryError, Stopped):
         print(json.dumps({"cut": "memory"}), flush=True)
         os._exit(0)
     seconds, used = time.perf_counter() - begun, time.process_time() - used
