@@ -14,14 +14,14 @@ import hypothesis  # noqa: F401 -- else at the end, beside threads: Python 3.11 
 import pytest
 from oracle import Hypothesis, best, tree
 from topomap.cli import main
-from topomap.files import output
-from topomap.solver import FORMS
-from topomap.vocabulary import OPTIMIZING
+from topomap.model.vocabulary import OPTIMIZING
+from topomap.runtime.files import output
+from topomap.solver.solving import FORMS
 
 ROOT = Path(__file__).resolve().parents[1]
 ENCODINGS = ROOT / "encodings"
 PARTS = ("planar", "euler", "closed", "travelled", "boundary", "perpendicular")
-COLUMNS = json.loads((ROOT / "scripts/topomap/figure4.json").read_text())["columns"]
+COLUMNS = json.loads((ROOT / "scripts/topomap/paper/figure4.json").read_text())["columns"]
 SHARED = ROOT.parent / "shared" / "maps"
 BIN = Path(sys.executable).parent
 # Under nohup, or in the background of a shell, SIGINT is ignored, and by all that is started.

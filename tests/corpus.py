@@ -19,13 +19,13 @@ from flawed import DEMANDS, INSTANCES, by_hand, drawn
 from misread import brute, corrupted, expected
 from oracle import Hypothesis
 from relaxed import Assignment, assignments, reasons
-from topomap.check import STEP_RULES, by_definition, by_rules
-from topomap.environment import EAST, WEST, grid, world
-from topomap.experience import MARKER, Experience, explore
-from topomap.explore import Standing
-from topomap.route import snake
-from topomap.solver import FORMS
-from topomap.topology import TopologicalMap
+from topomap.documents.check import STEP_RULES, by_definition, by_rules
+from topomap.model.experience import MARKER, Experience, explore
+from topomap.model.topology import TopologicalMap
+from topomap.questions.explore import Standing
+from topomap.solver.solving import FORMS
+from topomap.worlds.environment import EAST, WEST, grid, world
+from topomap.worlds.route import snake
 from worlds import WORLDS, of_grid, random_experience, walked
 
 

@@ -3,9 +3,9 @@
 import random
 from collections.abc import Iterator
 
-from topomap import search
-from topomap.experience import MARKER, Experience, parse
-from topomap.query import Query
+from topomap.model.experience import MARKER, Experience, parse
+from topomap.model.query import Query
+from topomap.search import traversal
 from worlds import random_experience
 
 At = list[tuple[int, int, int]]
@@ -109,7 +109,7 @@ def mapped(draw: random.Random, steps: int, marker: bool = False) -> tuple[Exper
     """A random experience, and a sound map of it with few paths; with a marker, the real one may
     be none."""
     experience = random_experience(draw, steps, marker)
-    for node in search.best_first(search.root(experience, Query())):
+    for node in traversal.best_first(traversal.root(experience, Query())):
         if node.steps == experience.steps:
             return experience, [(step, *dstate) for step, dstate in enumerate(node.dstates)]
     assert marker

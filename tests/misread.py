@@ -6,7 +6,7 @@ import random
 from dataclasses import replace
 
 from conftest import Truth
-from topomap.experience import Experience
+from topomap.model.experience import Experience
 from worlds import random_experience
 
 

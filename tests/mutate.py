@@ -27,9 +27,9 @@ import clingo
 from clingo import ast
 from conftest import ENCODINGS, ROOT
 from corpus import Query, queries, sizes
-from topomap.errors import InputError
-from topomap.files import output
-from topomap.options import LARGEST
+from topomap.runtime.errors import InputError
+from topomap.runtime.files import output
+from topomap.runtime.limits import LARGEST
 from tqdm import tqdm
 
 LISTED = ROOT / "tests/equivalent.toml"

@@ -14,12 +14,13 @@ from conftest import BIN, ENCODINGS, PARTS, TRIED, Truth, answers, costs
 from corpus import EXPERIENCES
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
-from topomap import search, solver
-from topomap.check import by_definition, by_rules
-from topomap.query import Query
-from topomap.solver import FORMS
-from topomap.statistics import Tally
-from topomap.watch import Watch
+from topomap.documents.check import by_definition, by_rules
+from topomap.model.query import Query
+from topomap.paper.statistics import Tally
+from topomap.runtime.watch import Watch
+from topomap.search import traversal
+from topomap.solver import solving
+from topomap.solver.solving import FORMS
 from worlds import WORLDS, random_experience
 
 QUICK = settings(
@@ -51,7 +52,7 @@ def case(experience, parts=(), *arguments, form="plain"):
         raise
 
 
-def searched(experience, *parts, places=None, horizon=None, way=search.hypotheses):
+def searched(experience, *parts, places=None, horizon=None, way=traversal.hypotheses):
     """The hypotheses that the search finds, each once; the best ones, if a part minimises."""
     query = Query(frozenset(parts), places, horizon)
     found = [f.at for f in way(experience, query, Watch()) if f.proved]
@@ -70,13 +71,13 @@ def all_give(expected, experience, parts=(), *arguments, facts=None):
 def driven(experience, form, *parts):
     """The hypotheses that the driver finds with a form of the encodings."""
     query = Query(frozenset(parts), encoding=form)
-    return {f.at for f in solver.hypotheses(experience, query, Watch())}
+    return {f.at for f in solving.hypotheses(experience, query, Watch())}
 
 
 def best(experience, way, form="fast"):
     """The optimal maps, or the best so far, with what they cost and which of these they are."""
     query = Query(encoding=form)
-    found = [f for f in solver.best(experience, query, Watch(), way) if f.proved]
+    found = [f for f in solving.best(experience, query, Watch(), way) if f.proved]
     return {(f.at, f.cost, f.kind) for f in found}
 
 
@@ -137,8 +138,8 @@ def agree_on_preferences(experience, truth):
         all_give(truth.best(closed=bool(closed)), experience, (*closed, "boundary", "minimal"))
     for form in FORMS:
         with case(experience, ("closed", "boundary", "minimal"), "--opt-mode=optN", form=form):
-            found = best(experience, solver.hypotheses, form)
-            assert found == best(experience, search.hypotheses)
+            found = best(experience, solving.hypotheses, form)
+            assert found == best(experience, traversal.hypotheses)
             expected = truth.best(closed=True) or truth.best(closed=False)
             assert {at for at, *_ in found} == expected
 
@@ -147,12 +148,12 @@ def agree_on_the_tree(experience, truth):
     """Levels of the tree are answers with a horizon, in both orders of the search; and with
     planarity as pruning."""
     for planar, levels in ((), truth.levels), (("planar",), truth.planar_levels()):
-        root = search.root(experience, Query(frozenset(planar)))
-        for order in search.breadth_first, search.depth_first:
+        root = traversal.root(experience, Query(frozenset(planar)))
+        for order in traversal.breadth_first, traversal.depth_first:
             counted = Counter(node.steps for node in order(root))
             assert [counted[step] for step in range(len(levels))] == [*map(len, levels)]
         tally = Tally(experience.steps)
-        for node in search.depth_first(root):
+        for node in traversal.depth_first(root):
             tally.add(node)
         figures = {
             "closed": truth.having("travelled", *planar),
@@ -175,7 +176,7 @@ def agree_on_the_tree(experience, truth):
         for form in FORMS:
             query = Query(frozenset(planar), encoding=form)
             with case(experience, planar, form=form):
-                assert solver.count(experience, query) == (len(levels[-1]), maps[-1])
+                assert solving.count(experience, query) == (len(levels[-1]), maps[-1])
 
 
 def adds_a_link(experience, at):

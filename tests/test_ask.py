@@ -10,14 +10,14 @@ import pytest
 from asked import FIGURES, PROPERTIES, RELATIONS, relation
 from conftest import ENCODINGS, ROOT, TRIED, Truth, run
 from oracle import Hypothesis
-from topomap import ask, statements
-from topomap.ask import Answers
-from topomap.check import by_definition, by_rules
-from topomap.errors import InputError
-from topomap.experience import parse, read
-from topomap.query import Query
-from topomap.solver import FORMS, forget, hypotheses
-from topomap.watch import Stopped, Watch
+from topomap.documents.check import by_definition, by_rules
+from topomap.model.experience import parse, read
+from topomap.model.query import Query
+from topomap.questions import ask, statements
+from topomap.questions.ask import Answers
+from topomap.runtime.errors import InputError
+from topomap.runtime.watch import Stopped, Watch
+from topomap.solver.solving import FORMS, forget, hypotheses
 from worlds import WORLDS, random_experience
 
 SIGNS = {

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 from bench import growth, jobs, measure, report, rows
-from topomap.query import Query
+from topomap.model.query import Query
 
 TESTS = Path(__file__).parent
 COMMAND = [sys.executable, "-m", "bench"]

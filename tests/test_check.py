@@ -7,10 +7,10 @@ import random
 import pytest
 from conftest import ENCODINGS, TRIED, run
 from flawed import DEMANDS, MAPS, mapped, of_texts, placed, with_errors
-from topomap.check import STEP_RULES, by_definition, by_rules
-from topomap.environment import grid
-from topomap.generate import instance
-from topomap.report import map_json
+from topomap.documents.answers import map_json
+from topomap.documents.check import STEP_RULES, by_definition, by_rules
+from topomap.worlds.environment import grid
+from topomap.worlds.instance import instance
 
 GRID = "instances/grid-3x3-snake.lp"
 

@@ -9,10 +9,10 @@ import time
 
 import pytest
 from conftest import BIN, ROOT, answers
-from topomap import formats
 from topomap.cli import SUBCOMMANDS
-from topomap.experience import read
-from topomap.vocabulary import PARTS
+from topomap.model.experience import read
+from topomap.model.vocabulary import PARTS
+from topomap.runtime import formats
 
 GRID = "instances/grid-3x3-snake.lp"
 LARGE = "instances/manhattan-tour40-signs30.lp"

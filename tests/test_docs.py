@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 from conftest import BIN, ROOT
-from topomap import figure4
+from topomap.paper import figure4
 
 DOCS = ROOT / "docs"
 README = ROOT / "README.md"

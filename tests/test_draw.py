@@ -18,17 +18,19 @@ import numpy as np
 import pytest
 from conftest import ROOT, run
 from defusedxml import ElementTree
-from topomap import draw, search, words
-from topomap.environment import grid, lattice
-from topomap.experience import read
-from topomap.generate import instance
-from topomap.layout import layout
+from topomap.drawing import draw
+from topomap.drawing.layout import layout
+from topomap.drawing.planarize import lacking, planar_part, routed
+from topomap.drawing.scenes import Scene
+from topomap.model import words
+from topomap.model.experience import read
+from topomap.model.query import Query
+from topomap.model.topology import TopologicalMap, gid, label
 from topomap.pictures import FORMATS
-from topomap.planarize import lacking, planar_part, routed
-from topomap.query import Query
-from topomap.scenes import Scene
-from topomap.topology import TopologicalMap, gid, label
-from topomap.watch import Watch
+from topomap.runtime.watch import Watch
+from topomap.search import traversal
+from topomap.worlds.environment import grid, lattice
+from topomap.worlds.instance import instance
 from worlds import WORLDS, random_experience
 
 QUIET = Watch()
@@ -47,7 +49,9 @@ def some_map(number, *parts, steps=14):
     found = [
         one.at
         for one, _ in zip(
-            search.hypotheses(experience, Query(frozenset(parts)), QUIET), range(50), strict=False
+            traversal.hypotheses(experience, Query(frozenset(parts)), QUIET),
+            range(50),
+            strict=False,
         )
     ]
     draws.shuffle(found)
@@ -267,7 +271,7 @@ def test_a_link_crosses_as_few_as_can_be(number):
 
 @pytest.mark.parametrize("name", WORLDS)
 def test_named_worlds(name):
-    found = list(search.hypotheses(WORLDS[name], Query(), QUIET))
+    found = list(traversal.hypotheses(WORLDS[name], Query(), QUIET))
     at = max(one.at for one in found)
     scene = Scene(WORLDS[name].map_of(at), at, name)
     check(scene)

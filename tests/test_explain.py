@@ -13,8 +13,8 @@ import pytest
 from conftest import ENCODINGS, ROOT, Truth, run
 from relaxed import Assignment, assignments, reasons
 from topomap import cli
-from topomap.experience import parse, read
-from topomap.reasons import KINDS, told_marker
+from topomap.model.experience import parse, read
+from topomap.questions.reasons import KINDS, told_marker
 from worlds import random_experience
 
 MOST = 2500  # assignments that are tried by brute force

@@ -12,15 +12,17 @@ from itertools import combinations
 import clingo
 import pytest
 from conftest import BIN, ENCODINGS, ROOT, TRIED, run
-from topomap import bisimulation, cli, explore
-from topomap.environment import EAST, grid
-from topomap.experience import explore as experienced
-from topomap.experience import read
-from topomap.explore import Standing, plan, predict, tells
-from topomap.generate import instance
-from topomap.query import Query
-from topomap.solver import hypotheses
-from topomap.watch import Watch
+from topomap import cli
+from topomap.documents import bisimulation
+from topomap.model.experience import explore as experienced
+from topomap.model.experience import read
+from topomap.model.query import Query
+from topomap.questions import explore
+from topomap.questions.explore import Standing, plan, predict, tells
+from topomap.runtime.watch import Watch
+from topomap.solver.solving import hypotheses
+from topomap.worlds.environment import EAST, grid
+from topomap.worlds.instance import instance
 from walks import alike, asked, best, gone, same, scattered, sight, standing
 
 

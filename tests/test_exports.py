@@ -17,17 +17,19 @@ import networkx as nx
 import numpy as np
 import pydot
 import pytest
-import topomap.layout
+import topomap.drawing.layout
 from conftest import ROOT, TRIED, lacking, run
-from topomap import exports, maps, solver
-from topomap.errors import InputError
-from topomap.experience import Experience, explore, read
-from topomap.query import Query
-from topomap.report import map_json
-from topomap.scenes import Scene
-from topomap.search import hypotheses
-from topomap.topology import gid
-from topomap.watch import Watch
+from topomap.documents import maps
+from topomap.documents.answers import map_json
+from topomap.drawing.scenes import Scene
+from topomap.exchange import exports
+from topomap.model.experience import Experience, explore, read
+from topomap.model.query import Query
+from topomap.model.topology import gid
+from topomap.runtime.errors import InputError
+from topomap.runtime.watch import Watch
+from topomap.search.traversal import hypotheses
+from topomap.solver import solving
 from worlds import WORLDS, random_experience, random_world
 
 # pydot calls pyparsing by names of old.
@@ -41,7 +43,7 @@ READ_BACK = {"graphml": exports.graphml, "json": exports.node_link}
 def optimal(name):
     """The best maps of an instance."""
     seen = read(ROOT / "instances" / f"{name}.lp")
-    found = solver.best(seen, Query(frozenset()), Watch(), solver.hypotheses)
+    found = solving.best(seen, Query(frozenset()), Watch(), solving.hypotheses)
     last = {}
     for one in filter(None, found):
         last = {**last, one.at: one} if one.proved else {one.at: one}
@@ -162,12 +164,12 @@ SCENES = {
 
 @pytest.fixture(params=list(SCENES))
 def scene(request, monkeypatch):
-    monkeypatch.setattr("topomap.layout.layout", layout)
+    monkeypatch.setattr("topomap.drawing.layout.layout", layout)
     return made(request.param)
 
 
 LAID = {}
-lay_out = topomap.layout.layout
+lay_out = topomap.drawing.layout.layout
 
 
 def layout(world, ahead):

@@ -17,8 +17,8 @@ from pathlib import Path
 import pytest
 from conftest import BIN, COLUMNS, ROOT, run
 from corpus import CORRIDOR
-from topomap import solver
-from topomap.watch import Stopped, Watch
+from topomap.runtime.watch import Stopped, Watch
+from topomap.solver import solving
 
 OLD = "old\n"
 QUIET = Watch()
@@ -389,20 +389,20 @@ def test_a_thread_that_ends_unheard_is_not_waited_for(monkeypatch):
     def end(*_, **__):
         raise SystemExit  # as MemoryError does where not even that can be told
 
-    monkeypatch.setattr(solver.Program, "solve", end)
+    monkeypatch.setattr(solving.Program, "solve", end)
     with pytest.raises(Stopped, match="out of memory"):
-        list(solver.hypotheses(CORRIDOR, solver.Query(), QUIET))
+        list(solving.hypotheses(CORRIDOR, solving.Query(), QUIET))
 
 
 def test_queries_one_after_another_are_solved_in_one_thread(monkeypatch):
-    threads, solve = set(), solver.Program.solve
+    threads, solve = set(), solving.Program.solve
 
     def note(*arguments, **named):
         threads.add(threading.get_ident())
         solve(*arguments, **named)
 
-    monkeypatch.setattr(solver.Program, "solve", note)
+    monkeypatch.setattr(solving.Program, "solve", note)
     for horizon in range(4):
-        assert list(solver.hypotheses(CORRIDOR, solver.Query(horizon=horizon), QUIET))
+        assert list(solving.hypotheses(CORRIDOR, solving.Query(horizon=horizon), QUIET))
     assert len(threads) == 1
     assert threads != {threading.get_ident()}

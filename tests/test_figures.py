@@ -5,12 +5,12 @@ import re
 import numpy as np
 import pytest
 from conftest import ROOT
-from topomap import figures
 from topomap.cli import main
-from topomap.environment import grid
-from topomap.experience import read
-from topomap.generate import instance
-from topomap.watch import Watch
+from topomap.model.experience import read
+from topomap.paper import figures
+from topomap.runtime.watch import Watch
+from topomap.worlds.environment import grid
+from topomap.worlds.instance import instance
 
 QUIET = Watch()
 DOCS = ROOT / "docs/figures"

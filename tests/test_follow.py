@@ -13,13 +13,13 @@ from conftest import BIN, ROOT, TRIED
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from test_online import certain, marks
-from topomap.environment import EAST, grid
-from topomap.errors import InputError
-from topomap.experience import explore, parse, read
-from topomap.following import Record, decoded
-from topomap.query import Query
-from topomap.route import snake
-from topomap.search import depth_first, root
+from topomap.model.experience import explore, parse, read
+from topomap.model.query import Query
+from topomap.questions.follow import Record, decoded
+from topomap.runtime.errors import InputError
+from topomap.search.traversal import depth_first, root
+from topomap.worlds.environment import EAST, grid
+from topomap.worlds.route import snake
 from worlds import random_experience
 
 GRID = ROOT / "instances/grid-3x3-snake.lp"

@@ -21,13 +21,16 @@ from pathlib import Path
 
 import networkx as nx
 import pytest
-from topomap import beyond, cli, exports, figure4, search
-from topomap.environment import grid
-from topomap.generate import instance
-from topomap.query import Query
-from topomap.report import Report
-from topomap.scenes import Scene
-from topomap.watch import Watch
+from topomap import cli
+from topomap.documents.answers import Report
+from topomap.drawing.scenes import Scene
+from topomap.exchange import exports
+from topomap.model.query import Query
+from topomap.paper import beyond, figure4
+from topomap.runtime.watch import Watch
+from topomap.search import traversal
+from topomap.worlds.environment import grid
+from topomap.worlds.instance import instance
 from worlds import random_experience
 
 SECONDS = 10
@@ -126,7 +129,7 @@ def maps(draw):
     query = Query(frozenset(["closed"]), noise=draw.choice([None, 1]))
     out = io.StringIO()
     report = Report(out, "good.lp", seen, query, None, None, as_json=True)
-    found = list(search.hypotheses(seen, replace(query, noise=None), Watch()))
+    found = list(traversal.hypotheses(seen, replace(query, noise=None), Watch()))
     for one in found:
         misread = [] if query.noise is None else [(draw.randrange(4), draw.randrange(4))]
         report.add(replace(one, misread=tuple(misread)))

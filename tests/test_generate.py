@@ -6,11 +6,11 @@ import random
 import networkx as nx
 import pytest
 from conftest import ROOT, SHARED, answers, run
-from topomap.environment import grid, lattice, maze
-from topomap.errors import InputError
-from topomap.experience import parse
-from topomap.generate import instance
-from topomap.route import COMPASS, letters, snake, tour
+from topomap.model.experience import parse
+from topomap.runtime.errors import InputError
+from topomap.worlds.environment import grid, lattice, maze
+from topomap.worlds.instance import instance
+from topomap.worlds.route import COMPASS, letters, snake, tour
 
 
 def compass(route):

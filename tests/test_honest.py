@@ -11,13 +11,17 @@ import re
 
 import pytest
 from conftest import ROOT
-from topomap import commands, formats, scenes, simulate, solver
-from topomap.environment import grid
-from topomap.experience import read
-from topomap.found import UNPROVED, Found
-from topomap.maps import KINDS, document
-from topomap.query import Query
-from topomap.watch import Stopped, Watch
+from topomap import commands
+from topomap.documents.maps import KINDS, document
+from topomap.drawing import scenes
+from topomap.model.experience import read
+from topomap.model.found import UNPROVED, Found
+from topomap.model.query import Query
+from topomap.questions import robot
+from topomap.runtime import formats
+from topomap.runtime.watch import Stopped, Watch
+from topomap.solver import solving
+from topomap.worlds.environment import grid
 
 GRID, SNAKE = "instances/grid-3x3-snake.lp", "instances/grid-4x4-snake.lp"
 LARGE = "instances/manhattan-tour40-signs30.lp"  # it has 305,359 maps
@@ -102,16 +106,16 @@ def made(tmp_path_factory):
     folder = tmp_path_factory.mktemp("honest")
     names = {name: folder / name for name in ("truth", "maps", "worlds", "out", "four")}
     experience, everything = read(ROOT / GRID), Watch()
-    found = list(solver.hypotheses(experience, Query(), everything))
+    found = list(solving.hypotheses(experience, Query(), everything))
     at = [[[step, *dstate] for step, dstate in enumerate(one.at)] for one in found]
     names["maps"].write_text(json.dumps([{"at": one} for one in at]))
-    closed = solver.hypotheses(experience, Query(frozenset(["closed", "planar"])), everything)
+    closed = solving.hypotheses(experience, Query(frozenset(["closed", "planar"])), everything)
     (truth, *_) = [one for one in closed if len(experience.map_of(one.at).stars) == 9]
     real = [[step, *dstate] for step, dstate in enumerate(truth.at)]
     names["truth"].write_text(json.dumps({"maps": [{"at": real}]}))
     names["worlds"].write_text("grid 5 5\n")
     seen = read(ROOT / SNAKE)
-    best = solver.best(seen, Query(frozenset(["planar"]), 16), everything)
+    best = solving.best(seen, Query(frozenset(["planar"]), 16), everything)
     four = [[[s, *dstate] for s, dstate in enumerate(one.at)] for one in best if one.proved]
     assert len(four) > 1
     names["four"].write_text(json.dumps([{"at": one} for one in four]))
@@ -215,7 +219,7 @@ def cut_short(monkeypatch, *found):
 
 def test_maps_that_are_not_proved_to_be_best_are_of_no_better_kind(inside, monkeypatch, tmp_path):
     experience = read(ROOT / GRID)
-    best = solver.best(experience, Query(), Watch())
+    best = solving.best(experience, Query(), Watch())
     at = next(one.at for one in best if one.proved)
     cut_short(monkeypatch, Found(at, "optimal", (6, 9), proved=False))
     done = inside("solve", GRID, "--optimal")
@@ -280,7 +284,7 @@ def test_one_of_two_maps_is_not_said_to_be_the_only_one(inside, tmp_path):
 
 def test_a_scene_is_one_of_those_found_unless_it_is_told_otherwise():
     seen = read(ROOT / GRID)
-    (at, *_) = [one.at for one in solver.best(seen, Query(), Watch()) if one.proved]
+    (at, *_) = [one.at for one in solving.best(seen, Query(), Watch()) if one.proved]
     scene = scenes.Scene(seen.map_of(at), at, "made")
     assert scene.title.startswith("made: map 1 of 1 found\n")
 
@@ -315,16 +319,16 @@ def test_a_robot_that_may_not_go_on_does_not_know_the_truth(inside):
 
 
 def test_a_robot_with_more_best_maps_than_it_keeps_does_not_know_the_truth(monkeypatch):
-    monkeypatch.setattr(simulate, "MOST_MAPS", 1)
+    monkeypatch.setattr(robot, "MOST_MAPS", 1)
     world = grid(3, 3).map
-    outcome = simulate.simulate(world, ((0, 0), 1), Query(), Watch(), 5)
+    outcome = robot.simulate(world, ((0, 0), 1), Query(), Watch(), 5)
     assert len(outcome.maps) == 1
     assert outcome.truth is not False
 
 
 def test_ask_leaves_open_what_the_closed_maps_do_not_settle():
     """That no optimal map is closed is not yet that there is no best map."""
-    from topomap import ask, statements
+    from topomap.questions import ask, statements
 
     experience = read(ROOT / "instances/manhattan-tour20.lp")
     answers = ask.Answers([statements.parse("planar", experience, "ask")])

@@ -8,13 +8,13 @@ import clingo
 import pytest
 from conftest import ENCODINGS, ROOT, run
 from flawed import INSTANCES
-from topomap.errors import InputError
-from topomap.experience import ARITY, parse
-from topomap.options import LARGEST
+from topomap.model.experience import ARITY, parse
+from topomap.runtime.errors import InputError
+from topomap.runtime.limits import LARGEST
 from worlds import random_experience
 
 PROGRAM = (ENCODINGS / "input.lp").read_text()
-KINDS = {  # what topomap.experience says, and the error that says the same
+KINDS = {  # what topomap.model.experience says, and the error that says the same
     r"no facts.*": "-1,no_slots",
     r"\d+ facts slots.*": "-1,two_slots",
     r"slots\((?P<K>-?\d+)\): K must.*": r"-1,(odd|few|many)_slots\({K}\)",

@@ -9,13 +9,14 @@ from functools import cache
 
 import pytest
 from conftest import BIN, ROOT, TRIED, run
-from topomap import beyond, search, solver, statistics
 from topomap.cli import main
-from topomap.experience import read
-from topomap.journal import Journal
-from topomap.query import Query
-from topomap.share import ALONE
-from topomap.watch import Watch
+from topomap.model.experience import read
+from topomap.model.query import Query
+from topomap.paper import beyond, statistics
+from topomap.runtime.journal import Journal
+from topomap.runtime.watch import Watch
+from topomap.search import traversal
+from topomap.solver.share import ALONE
 
 GRID = str(ROOT / "instances/grid-3x3-snake.lp")
 PAPER = str(ROOT / "instances/grid-3x4-paper.lp")
@@ -95,11 +96,11 @@ def test_a_run_that_was_cut_goes_on(tmp_path, monkeypatch, name):
     assert {path.name for path in tmp_path.iterdir()} == {"whole", "file"}
 
 
-@pytest.mark.parametrize("way", [search, solver])
+@pytest.mark.parametrize("way", [traversal, solving])
 def test_what_is_done_is_not_done_again(tmp_path, monkeypatch, way):
     """A resumed run asks for the parts that are left, and no more."""
     file = str(tmp_path / "maps.json")
-    call = ["solve", PAPER, "--by", "clingo" if way is solver else "search", "-o", file]
+    call = ["solve", PAPER, "--by", "clingo" if way is solving else "search", "-o", file]
     with monkeypatch.context() as patch:
         cut_after(patch, 39)
         with pytest.raises(Cut):
@@ -115,7 +116,7 @@ def test_what_is_done_is_not_done_again(tmp_path, monkeypatch, way):
     monkeypatch.setattr(way, "hypotheses", spy)
     assert main([*call, "--resume"]) == 0
     (left,) = asked
-    assert len(left) == len(search.cubes(read(PAPER), Query())[0]) - 40
+    assert len(left) == len(traversal.cubes(read(PAPER), Query())[0]) - 40
 
 
 @pytest.mark.long

@@ -6,14 +6,15 @@ from dataclasses import replace
 
 import pytest
 from conftest import ROOT, answers
-from topomap import search, solver
-from topomap.check import by_definition, by_rules
-from topomap.environment import EAST, grid
-from topomap.experience import Experience, explore, parse, read
-from topomap.query import Query
-from topomap.route import snake
-from topomap.solver import FORMS
-from topomap.watch import Watch
+from topomap.documents.check import by_definition, by_rules
+from topomap.model.experience import Experience, explore, parse, read
+from topomap.model.query import Query
+from topomap.runtime.watch import Watch
+from topomap.search import traversal
+from topomap.solver import solving
+from topomap.solver.solving import FORMS
+from topomap.worlds.environment import EAST, grid
+from topomap.worlds.route import snake
 
 QUIET = Watch()
 # Turns after the snake, and how many places the false one of two maps has that look alike: the
@@ -38,7 +39,7 @@ def continued(size: int, turns: list[int], drops=(), picks=()):
 def fates(experience: Experience, at) -> list[str | None]:
     """What becomes of a closed map from its last step on: after each step None, or the rule
     that refuses it."""
-    node = search.root(experience, Query())
+    node = traversal.root(experience, Query())
     node.goto(at)
     found: list[str | None] = []
     while node.steps < experience.steps:
@@ -58,7 +59,7 @@ def test_two_maps_that_look_alike_come_apart(size, turns, places):
     assert (marked.drops, marked.picks) == ({last}, NONE)
     snake_alone = read(ROOT / f"instances/grid-{size}x{size}-snake.lp")
     assert bare.cut(last) == snake_alone
-    best = [f.at for f in solver.best(snake_alone, Query(places=16), QUIET) if f.proved]
+    best = [f.at for f in solving.best(snake_alone, Query(places=16), QUIET) if f.proved]
     real = snake_alone.map_of(truth[: last + 1])
     others = [at for at in best if not snake_alone.map_of(at).isomorphic(real)]
     # Another walk tells the other of 12 places (Figure 5 c) from the real map.

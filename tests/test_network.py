@@ -5,10 +5,10 @@ import os
 import networkx as nx
 import pytest
 from conftest import SHARED, run
-from topomap.environment import grid
-from topomap.errors import InputError
-from topomap.experience import parse
-from topomap.network import load
+from topomap.model.experience import parse
+from topomap.runtime.errors import InputError
+from topomap.worlds.environment import grid
+from topomap.worlds.network import load
 
 
 def write(tmp_path, graph):

@@ -10,14 +10,14 @@ import pytest
 from asked import FIGURES
 from conftest import ENCODINGS, ROOT, TRIED, run
 from misread import brute, corrupted, expected
-from topomap import solver
 from topomap.cli import main
-from topomap.environment import grid
-from topomap.errors import InputError
-from topomap.experience import Experience, explore, parse, read
-from topomap.query import Query
-from topomap.solver import misreadings
-from topomap.watch import Watch
+from topomap.model.experience import Experience, explore, parse, read
+from topomap.model.query import Query
+from topomap.runtime.errors import InputError
+from topomap.runtime.watch import Watch
+from topomap.solver import solving
+from topomap.solver.solving import misreadings
+from topomap.worlds.environment import grid
 from worlds import random_experience
 
 QUIET = Watch()
@@ -62,7 +62,7 @@ def answered(seen: Experience, parts, most: int, mode: str):
 
 def driven(seen: Experience, parts, most: int):
     query = Query(frozenset(parts), encoding="plain", noise=most)
-    found = [f for f in solver.hypotheses(seen, query, QUIET) if f.proved]
+    found = [f for f in solving.hypotheses(seen, query, QUIET) if f.proved]
     answers = {(f.at, frozenset(f.misread)): f.cost for f in found}
     assert len(answers) == len(found)
     return answers
@@ -89,7 +89,7 @@ def agree_with_brute_force(seen: Experience, most: int):
     closed = expected(ways, ("closed", "boundary", "minimal"))
     optimal = {key: cost for key, cost in closed.items() if cost[:2] == least} or open_too
     query = Query(encoding="plain", noise=most)
-    found = [f for f in solver.best(seen, query, QUIET) if f.proved]
+    found = [f for f in solving.best(seen, query, QUIET) if f.proved]
     assert {(f.at, frozenset(f.misread)): f.cost for f in found} == best(optimal)
     every = expected(ways, ())
     return bool(every), any(not misread for _, misread in every)
@@ -140,7 +140,7 @@ def test_figures_are_of_what_is_there():
 def test_no_view_is_disbelieved_for_a_map_to_be_closed():
     """The one step leads to a place with a gateway more; without that, the map were closed."""
     seen = parse("slots(2). view(0,0). turn(1,0). view(1,0). view(1,1).", "seen")
-    found = list(solver.best(seen, Query(encoding="plain", noise=1), QUIET))
+    found = list(solving.best(seen, Query(encoding="plain", noise=1), QUIET))
     assert [(f.kind, f.cost, f.misread) for f in found if f.proved] == [
         ("best so far", (0, 0, 1, 2), ())
     ]
@@ -194,7 +194,7 @@ def test_without_misreadings_the_answers_are_those_without_noise():
         seen = random_experience(random.Random(f"quiet {seed}"), 8, marker=seed % 2 == 1)
         for parts in PARTS:
             query = Query(frozenset(parts))
-            bare = {f.at for f in solver.hypotheses(seen, query, QUIET) if f.proved}
+            bare = {f.at for f in solving.hypotheses(seen, query, QUIET) if f.proved}
             for most in (0, 2):
                 found = driven(seen, parts, most)
                 if bare:
@@ -230,12 +230,12 @@ def test_one_wrong_view_hides_every_map(size, step, misread):
     true, truth = back_and_forth(size, RETRACED[size])
     seen = true.corrected(misread)
     if not seen.misled():
-        assert not list(solver.hypotheses(seen, Query(), QUIET))
+        assert not list(solving.hypotheses(seen, Query(), QUIET))
     parts = frozenset(["closed", "boundary", "minimal", "planar"])
     if size == 4:
         parts |= {"perpendicular"}
     query = Query(parts, encoding="plain", noise=1)
-    found = [f for f in solver.hypotheses(seen, query, QUIET) if f.proved]
+    found = [f for f in solving.hypotheses(seen, query, QUIET) if f.proved]
     assert [(f.at, f.misread) for f in found] == [(truth, tuple(misread))]
     assert found[0].cost[:2] == (1, len(misread))
     assert {step} == {t for t, _ in misread}
@@ -245,8 +245,8 @@ def test_two_wrong_views():
     true, truth = back_and_forth(3, RETRACED[3])
     seen = true.corrected([(13, 2), (18, 0)])
     query = Query(frozenset(["closed", "boundary", "minimal", "planar"]), encoding="plain", noise=1)
-    assert not list(solver.hypotheses(seen, query, QUIET))
-    found = [f for f in solver.hypotheses(seen, replace(query, noise=2), QUIET) if f.proved]
+    assert not list(solving.hypotheses(seen, query, QUIET))
+    found = [f for f in solving.hypotheses(seen, replace(query, noise=2), QUIET) if f.proved]
     assert (truth, ((13, 2), (18, 0))) in [(f.at, f.misread) for f in found]
     assert {f.cost[:2] for f in found} == {(2, 2)}
 

@@ -9,11 +9,12 @@ import clingo
 import pytest
 from conftest import ENCODINGS, ROOT, TRIED, plain
 from oracle import Hypothesis, best, tree
-from topomap import online, search, solver
-from topomap.experience import MARKER, read
-from topomap.online import Certain, Follower, crossed
-from topomap.query import Query
-from topomap.watch import Watch
+from topomap.model.experience import MARKER, read
+from topomap.model.query import Query
+from topomap.runtime.watch import Watch
+from topomap.search import traversal
+from topomap.solver import online, solving
+from topomap.solver.online import Certain, Follower, crossed
 from worlds import WORLDS, random_experience
 
 WATCH = Watch()
@@ -130,7 +131,7 @@ def test_the_papers_instances(name, planar, bound):
     experience = read(ROOT / f"instances/{name}.lp")
     query = Query(frozenset(["planar"] if planar else ()), bound)
     levels = [0] * (experience.steps + 1)
-    for node in search.depth_first(search.root(experience, query)):
+    for node in traversal.depth_first(traversal.root(experience, query)):
         levels[node.steps] += 1
     follower = begun(experience, planar, bound)
     for step, level in enumerate(levels):
@@ -140,7 +141,7 @@ def test_the_papers_instances(name, planar, bound):
         assert (status.hypotheses, status.exact) == (level, True)
         if step % 4 and step < experience.steps:
             continue
-        found = [one for one in solver.best(experience.cut(step), query, WATCH) if one.proved]
+        found = [one for one in solving.best(experience.cut(step), query, WATCH) if one.proved]
         assert sorted(one.at for one in found) == list(status.best)
         assert {(one.kind, one.cost) for one in found} == {(status.kind, status.cost)}
 

@@ -19,16 +19,18 @@ import oracle
 import pytest
 from conftest import BIN, ROOT, answers, lacking, plain, run
 from matplotlib.path import Path as Outline
-from topomap import cli, svg, words
-from topomap.agreement import Agreement
-from topomap.environment import grid
-from topomap.experience import parse, read
-from topomap.page import FOLDER, Exploration
-from topomap.query import Query
-from topomap.replay import SHOWN, fate, replay
-from topomap.scenes import Scene
-from topomap.search import breadth_first, root
-from topomap.watch import Watch
+from topomap import cli
+from topomap.drawing import svg
+from topomap.drawing.agreement import Agreement
+from topomap.drawing.scenes import Scene
+from topomap.model import words
+from topomap.model.experience import parse, read
+from topomap.model.query import Query
+from topomap.page.page import FOLDER, Exploration
+from topomap.page.replay import SHOWN, fate, replay
+from topomap.runtime.watch import Watch
+from topomap.search.traversal import breadth_first, root
+from topomap.worlds.environment import grid
 from worlds import WORLDS, random_experience
 
 GRID = "instances/grid-3x3-snake.lp"
@@ -311,8 +313,8 @@ def test_shown_are_the_beginnings_of_the_best_and_the_cheapest():
 
 def test_large_steps_are_looked_at_in_part(monkeypatch):
     """Then nothing is counted, but what is shown are hypotheses still."""
-    monkeypatch.setattr("topomap.replay.MOST", 20)
-    monkeypatch.setattr("topomap.replay.KEPT", 5)
+    monkeypatch.setattr("topomap.page.replay.MOST", 20)
+    monkeypatch.setattr("topomap.page.replay.KEPT", 5)
     seen = read(ROOT / GRID)
     steps, _ = replay(seen, Query(), [], Watch())
     whole = levels(seen.facts())

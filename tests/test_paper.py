@@ -5,13 +5,13 @@ import re
 
 import pytest
 from conftest import COLUMNS, ROOT, Truth, answers, run
-from topomap import figure4
-from topomap.experience import read
-from topomap.journal import Journal
-from topomap.query import Query
-from topomap.solver import FORMS
-from topomap.statistics import tree
-from topomap.watch import Watch
+from topomap.model.experience import read
+from topomap.model.query import Query
+from topomap.paper import figure4
+from topomap.paper.statistics import tree
+from topomap.runtime.journal import Journal
+from topomap.runtime.watch import Watch
+from topomap.solver.solving import FORMS
 
 IDS = [f"{c['environment']}{'-planar' * c['planarity']}" for c in COLUMNS]
 

@@ -8,15 +8,16 @@ from itertools import combinations, combinations_with_replacement, pairwise
 import phased
 import pytest
 from conftest import TRIED
-from topomap import phases, plane, search, solver
-from topomap.check import by_definition
-from topomap.environment import grid, maze, world
-from topomap.experience import Experience, explore
-from topomap.generate import instance
-from topomap.query import Query
-from topomap.solver import FORMS, Program
-from topomap.topology import TopologicalMap
-from topomap.watch import Stopped, Watch
+from topomap.documents.check import by_definition
+from topomap.model.experience import Experience, explore
+from topomap.model.query import Query
+from topomap.model.topology import TopologicalMap
+from topomap.runtime.watch import Stopped, Watch
+from topomap.search import traversal
+from topomap.solver import phases, plane, solving
+from topomap.solver.solving import FORMS, Program
+from topomap.worlds.environment import grid, maze, world
+from topomap.worlds.instance import instance
 from worlds import WORLDS, random_world, with_marker
 
 QUIET = Watch()
@@ -148,17 +149,17 @@ def agree(experience, horizon=None, more=MORE, searched=True, places=None, commo
     """Demand the same answers of the phases, of the plain encoding and of the search."""
     for parts in more:
         asked = experience, (*common, *parts)
-        plain = found(solver.hypotheses, *asked, "plain", horizon, places)
+        plain = found(solving.hypotheses, *asked, "plain", horizon, places)
         TRIED["queries in phases"] += 1
         TRIED["queries in phases that had an answer"] += bool(plain)
-        assert found(solver.hypotheses, *asked, "fast", horizon, places) == plain, (
+        assert found(solving.hypotheses, *asked, "fast", horizon, places) == plain, (
             experience.facts(),
             parts,
             horizon,
             places,
         )
         if searched:
-            assert found(search.hypotheses, *asked, "plain", horizon, places) == plain
+            assert found(traversal.hypotheses, *asked, "plain", horizon, places) == plain
     return plain
 
 
@@ -207,7 +208,7 @@ BOUNDED = [(), ("planar",), ("perpendicular",), ("minimal",), ("boundary", "plan
 def agree_on_bounds(number, most):
     """Closed maps with the least number of places, the next one, and one place less."""
     experience, horizon = toured(random.Random(f"bounds {number}"), most, random_world)
-    maps = found(solver.hypotheses, experience, ("closed",), "plain", horizon)
+    maps = found(solving.hypotheses, experience, ("closed",), "plain", horizon)
     sizes = sorted({len({place for place, _ in at}) for at in maps})
     for places in {size - less for size in sizes[:2] for less in (0, 1)} or {3}:
         agree(experience, horizon, BOUNDED, False, places, ("closed",))
@@ -229,12 +230,12 @@ def test_what_is_rare_is_not_lost(monkeypatch):
     """Maps that lines.lp has not come to are found later."""
     by_lines(monkeypatch)
     snake = instance(grid(4, 4), "snake").experience
-    settled = found(solver.hypotheses, snake, SQUARE)
+    settled = found(solving.hypotheses, snake, SQUARE)
     monkeypatch.setattr(phases, "TRY_HARD", 15)
     known = claims(snake, ("lines",))[1]
     assert {fact.name for fact in known} == {"rare"}
     assert any(is_rare(fact, at) for fact in known for at in settled)
-    assert found(solver.hypotheses, snake, SQUARE) == settled
+    assert found(solving.hypotheses, snake, SQUARE) == settled
     assert len(settled) == 256
 
 
@@ -279,7 +280,7 @@ def refuses_what_is_not_planar(draw, most):
     """How many maps, at most, were refused: all that are not planar, and no other."""
     experience, _ = toured(draw, most, draw.choice([square_world, crossing_streets]))
     left, every = planar_lines(experience)
-    planar = found(solver.hypotheses, experience, (*SQUARE, "planar"), "plain")
+    planar = found(solving.hypotheses, experience, (*SQUARE, "planar"), "plain")
     assert left == {shown for _, shown in phased.lines(experience, planar)}, experience.facts()
     return len(every - left)
 
@@ -404,7 +405,7 @@ CHAINS = [
 def are_true(experience, chain):
     """Demand that what these phases find is true of every map for which it is said."""
     parts = {*SQUARE, *(["planar"] if "beginnings" in chain else [])}
-    maps = found(solver.hypotheses, experience, parts, "plain")
+    maps = found(solving.hypotheses, experience, parts, "plain")
     pairs, known = claims(experience, chain)
     fits = {tuple(a.number for a in pair.arguments) for pair in pairs if pair.name == "fits"}
     for at in maps:
@@ -451,7 +452,7 @@ def test_each_phase_finds_something():
 
 def test_the_snake_of_6x6():
     made = instance(grid(6, 6), "snake")
-    assert found(solver.hypotheses, made.experience, (*SQUARE, "planar")) == {made.truth}
+    assert found(solving.hypotheses, made.experience, (*SQUARE, "planar")) == {made.truth}
 
 
 def test_the_snake_of_5x5_has_no_closed_map_of_fewer_places():
@@ -476,8 +477,8 @@ def test_the_snake_of_5x5_has_no_closed_map_of_fewer_places():
 def test_closed_planar_maps_of_fewest_places(size, places, number):
     """And each is sound by definition."""
     experience = instance(grid(size, size), "snake").experience
-    fewer = found(solver.hypotheses, experience, ("closed", "planar"), places=places - 1)
-    maps = found(solver.hypotheses, experience, ("closed", "planar"), places=places)
+    fewer = found(solving.hypotheses, experience, ("closed", "planar"), places=places - 1)
+    maps = found(solving.hypotheses, experience, ("closed", "planar"), places=places)
     assert (len(fewer), len(maps)) == (0, number)
     for at in maps:
         facts = [(step, *dstate) for step, dstate in enumerate(at)]
@@ -527,6 +528,6 @@ def test_phases_that_run_out_of_memory_say_so(monkeypatch):
     monkeypatch.setattr(phases, "found", full)
     query = Query(frozenset(SQUARE))
     with pytest.raises(Stopped, match="out of memory"):
-        list(solver.hypotheses(WORLDS["to and fro"], query, QUIET))
+        list(solving.hypotheses(WORLDS["to and fro"], query, QUIET))
     with pytest.raises(Stopped, match="out of memory"):
-        solver.count(WORLDS["to and fro"], query)
+        solving.count(WORLDS["to and fro"], query)

@@ -9,7 +9,7 @@ from clintest.solver import Clingo
 from clintest.test import Assert
 from conftest import answers
 from corpus import EXPERIENCES, seen
-from topomap.solver import FORMS
+from topomap.solver.solving import FORMS
 
 in_every_form = pytest.mark.parametrize("form", FORMS)
 

@@ -7,16 +7,17 @@ from fractions import Fraction
 import pytest
 from conftest import COLUMNS, ROOT
 from oracle import Hypothesis as Slow
-from topomap import beyond, search
-from topomap.branching import Summary, branching
-from topomap.environment import grid
-from topomap.experience import Experience, read
-from topomap.generate import instance
-from topomap.journal import Journal
-from topomap.query import Query
-from topomap.share import crew
-from topomap.statistics import Tally, searched
-from topomap.watch import Stopped, Watch
+from topomap.model.experience import Experience, read
+from topomap.model.query import Query
+from topomap.paper import beyond
+from topomap.paper.statistics import Tally, searched
+from topomap.runtime.journal import Journal
+from topomap.runtime.watch import Stopped, Watch
+from topomap.search import traversal
+from topomap.search.branching import Summary, branching
+from topomap.solver.share import crew
+from topomap.worlds.environment import grid
+from topomap.worlds.instance import instance
 from worlds import random_experience
 
 GRID = "instances/grid-3x3-snake.lp"
@@ -59,10 +60,10 @@ def test_pruning_of_perpendicular_maps_loses_none():
     """Perpendicular maps have perpendicular parents only."""
     for number in range(60):
         experience = random_experience(random.Random(f"perpendicular {number}"), 9)
-        pruned = search.root(experience, Query(frozenset(["perpendicular"])))
-        found = {node.dstates for node in search.depth_first(pruned)}
-        whole = search.root(experience, Query())
-        every = {n.dstates: n.square() for n in search.depth_first(whole)}
+        pruned = traversal.root(experience, Query(frozenset(["perpendicular"])))
+        found = {node.dstates for node in traversal.depth_first(pruned)}
+        whole = traversal.root(experience, Query())
+        every = {n.dstates: n.square() for n in traversal.depth_first(whole)}
         slow = {
             at: Slow((experience.slots, experience.views, (None, *experience.turns), ()), at)
             for at in every
@@ -76,7 +77,7 @@ def test_what_is_kept_up_step_by_step_is_what_the_map_has():
     nodes = 0
     for number in range(60):
         experience = random_experience(random.Random(f"kept up {number}"), 9)
-        for node in search.depth_first(search.root(experience, Query())):
+        for node in traversal.depth_first(traversal.root(experience, Query())):
             nodes += 1
             world = node.map
             walks = [list(walk) for walk in world.faces()]
@@ -113,12 +114,12 @@ def beside(world, walk):
 def test_undoing_everything_leaves_the_root():
     for number in range(30):
         experience = random_experience(random.Random(f"undo {number}"), 8)
-        node = search.root(experience, Query())
+        node = traversal.root(experience, Query())
         before = node.at[:], node.links.copy(), node.faces, node.paths.copy(), node.cost
-        for _ in search.depth_first(node):
+        for _ in traversal.depth_first(node):
             pass
         assert before == (node.at, node.links, node.faces, node.paths, node.cost)
-        for _ in search.breadth_first(node):
+        for _ in traversal.breadth_first(node):
             pass
         assert before == (node.at, node.links, node.faces, node.paths, node.cost)
 
@@ -150,9 +151,9 @@ def test_best_first_says_no_where_no_map_is_closed(topomap):
 def test_best_first_goes_by_the_policy():
     """A node is no worse than any other that was open when it was taken."""
     experience = read(ROOT / GRID)
-    node = search.root(experience, Query())
+    node = traversal.root(experience, Query())
     opened, taken = {node.dstates: node.cost}, []
-    for _ in search.best_first(node):
+    for _ in traversal.best_first(node):
         at = node.dstates
         assert opened.pop(at) <= min(opened.values(), default=(99, 99))
         taken.append(at)
@@ -179,7 +180,7 @@ def test_partial_figures_say_so(topomap):
 
 
 def planar_nodes(experience, places=None):
-    return branching(search.root(experience, Query(frozenset(["planar"]), places)), QUIET)
+    return branching(traversal.root(experience, Query(frozenset(["planar"]), places)), QUIET)
 
 
 @pytest.mark.parametrize("column", COLUMNS[1::2], ids=lambda c: c["environment"])

@@ -16,17 +16,19 @@ from pathlib import Path
 import pytest
 from conftest import BIN, COLUMNS, ROOT
 from distributed import Client, LocalCluster
-from topomap import search, share, solver, statistics
 from topomap.cli import main
-from topomap.errors import InputError
-from topomap.experience import read
-from topomap.journal import Journal
-from topomap.processes import Processes
-from topomap.query import Query
-from topomap.solver import count, demand_cover, hypotheses
-from topomap.statistics import tree
-from topomap.vocabulary import PARTS
-from topomap.watch import Stopped, Watch
+from topomap.model.experience import read
+from topomap.model.query import Query
+from topomap.model.vocabulary import PARTS
+from topomap.paper import statistics
+from topomap.paper.statistics import tree
+from topomap.runtime.errors import InputError
+from topomap.runtime.journal import Journal
+from topomap.runtime.watch import Stopped, Watch
+from topomap.search import traversal
+from topomap.solver import share, solving
+from topomap.solver.processes import Processes
+from topomap.solver.solving import count, demand_cover, hypotheses
 from worlds import random_experience
 
 GRID = str(ROOT / "instances/grid-3x3-snake.lp")
@@ -140,17 +142,17 @@ def test_what_clingo_counts_is_what_it_enumerates(block):
         parts = [part for part in PARTS if draw.random() < 0.25]
         query = Query(frozenset(parts), draw.choice([None, None, 4]), draw.choice([None, 5]))
         maps = [found.at for found in hypotheses(experience, query, QUIET) if found.proved]
-        node = search.root(experience, query)
+        node = traversal.root(experience, query)
         grown = 0
         for at in maps:
-            node = search.root(experience, Query(horizon=query.horizon))
+            node = traversal.root(experience, Query(horizon=query.horizon))
             node.goto(at)
             grown += node.grown
         assert count(experience, query, (), QUIET) == (len(maps), grown)
         assert count(experience, query, (), None, grown=False) == (len(maps), 0)
         if query.optimizes:
             continue
-        cubes, depth = search.cubes(experience, query, draw.choice([1, 2, 5, 64]))
+        cubes, depth = traversal.cubes(experience, query, draw.choice([1, 2, 5, 64]))
         demand_cover(experience, query, QUIET, cubes, depth)
         begun = [sum(at[: len(cube)] == cube for at in maps) for cube in cubes]
         assert [count(experience, query, cube, QUIET)[0] for cube in cubes] == begun
@@ -162,9 +164,9 @@ def test_cubes_part_the_tree():
         draw = random.Random(f"parted {number}")
         experience = random_experience(draw, 10)
         least = draw.choice([1, 2, 3, 8])
-        cubes, depth = search.cubes(experience, Query(), least)
-        node = search.root(experience, Query())
-        nodes = [node.dstates for node in search.depth_first(node)]
+        cubes, depth = traversal.cubes(experience, Query(), least)
+        node = traversal.root(experience, Query())
+        nodes = [node.dstates for node in traversal.depth_first(node)]
         level = [at for at in nodes if len(at) == depth + 1]
         for at in nodes:
             over = [cube for cube in cubes if at[: len(cube)] == cube]
@@ -173,14 +175,14 @@ def test_cubes_part_the_tree():
         sizes = {cube: sum(at[: len(cube)] == cube for at in level) for cube in cubes}
         assert all(size * least <= len(level) or size == 1 for size in sizes.values())
         assert len(cubes) >= min(least, len(level))
-        above = [node.dstates for node in search.top(node, set(cubes))]
+        above = [node.dstates for node in traversal.top(node, set(cubes))]
         below = [at for at in nodes if any(at[: len(cube)] == cube for cube in cubes)]
         assert sorted(above + below) == sorted(nodes)
 
 
 def test_a_part_of_the_tree_that_is_missed_or_met_twice_is_noticed():
     experience = read(GRID)
-    cubes, depth = search.cubes(experience, Query())
+    cubes, depth = traversal.cubes(experience, Query())
     demand_cover(experience, Query(), QUIET, cubes, depth)
     for wrong in (cubes[1:], [*cubes, cubes[-1][:-1]]):
         with pytest.raises(RuntimeError, match="differ"):
@@ -357,7 +359,7 @@ def test_usage(capsys, monkeypatch):
         (["count", GRID, "--dask", "no://127.0.0.1:1"], "--dask no://127.0.0.1:1: "),
         (["count", GRID, "--dask", "tcp://127.0.0.1:1"], "--dask tcp://127.0.0.1:1: "),
     ):
-        monkeypatch.setattr("topomap.cluster.PATIENCE", 1)
+        monkeypatch.setattr("topomap.solver.cluster.PATIENCE", 1)
         assert main(call) == 2, call
         out, err = capsys.readouterr()
         assert (out, err.count("\n")) == ("", 1), err
@@ -366,7 +368,7 @@ def test_usage(capsys, monkeypatch):
 
 
 def test_a_client_that_finds_no_cluster_is_closed(monkeypatch):
-    monkeypatch.setattr("topomap.cluster.PATIENCE", 1)
+    monkeypatch.setattr("topomap.solver.cluster.PATIENCE", 1)
     gc.disable()
     try:
         for address in ("nowhere", "no://127.0.0.1:1", "tcp://127.0.0.1:1"):
@@ -385,7 +387,7 @@ def test_without_dask(capsys, monkeypatch):
 
 
 def test_workers_that_have_another_topomap(cluster, capsys, monkeypatch):
-    monkeypatch.setattr(solver, "digest", lambda: "another one")
+    monkeypatch.setattr(solving, "digest", lambda: "another one")
     assert main(["count", GRID, "--dask", cluster]) == 2
     err = capsys.readouterr().err
     assert err.count("\n") == 1

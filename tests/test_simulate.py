@@ -5,14 +5,17 @@ import random
 
 import pytest
 from conftest import ROOT, TRIED
-from topomap import search, simulate, simulating, solver
-from topomap.environment import grid, world
-from topomap.errors import InputError
-from topomap.experience import explore, read
-from topomap.family import expand
-from topomap.query import Query
-from topomap.simulate import Robot, random_walk, reached
-from topomap.watch import Watch
+from topomap import simulating
+from topomap.model.experience import explore, read
+from topomap.model.query import Query
+from topomap.questions import robot
+from topomap.questions.robot import Robot, random_walk, reached
+from topomap.runtime.errors import InputError
+from topomap.runtime.watch import Watch
+from topomap.search import traversal
+from topomap.solver import solving
+from topomap.worlds.environment import grid, world
+from topomap.worlds.family import expand
 from worlds import random_world
 
 ALL = Query(frozenset())
@@ -22,7 +25,7 @@ MOST = 16
 
 
 def explored(made, start, query=ALL, most=MOST, marker=False):
-    return simulate.simulate(made, start, query, Watch(), most, marker)
+    return robot.simulate(made, start, query, Watch(), most, marker)
 
 
 def worlds(number, seed):
@@ -45,9 +48,9 @@ def ended_as_it_says(made, start, outcome):
     """What the outcome says, held against the search and the world."""
     experience, truth = explore(made, start, routed(made, start, outcome.experience))
     assert experience == outcome.experience
-    best = solver.best(experience, ALL, Watch(), search.hypotheses)
+    best = solving.best(experience, ALL, Watch(), traversal.hypotheses)
     best = sorted(one.at for one in best if one.proved)
-    assert [one.at for one in outcome.maps] == best[: simulate.MOST_MAPS]
+    assert [one.at for one in outcome.maps] == best[: robot.MOST_MAPS]
     maps = [experience.map_of(at) for at in best]
     closed = not any(one.pending() for one in maps)
     if outcome.end == "settled":
@@ -62,7 +65,7 @@ def ended_as_it_says(made, start, outcome):
         assert outcome.end == "steps"
         assert outcome.steps == MOST
     true = truth in best and not experience.map_of(truth).pending()
-    is_open = outcome.end == "steps" or len(outcome.maps) == simulate.MOST_MAPS
+    is_open = outcome.end == "steps" or len(outcome.maps) == robot.MOST_MAPS
     assert outcome.truth == (true or (None if is_open else False))
 
 
@@ -89,7 +92,7 @@ def test_robots_in_random_worlds_end_as_they_say(number, seed):
 def test_a_robot_knows_nothing_but_what_it_saw():
     """In two worlds that cannot be told apart it goes the same ways."""
     experience = read(ROOT / "instances/grid-3x3-snake.lp")
-    best = solver.best(experience, ALL, Watch())
+    best = solving.best(experience, ALL, Watch())
     first, second = (experience.map_of(one.at) for one in best if one.proved)
     assert not first.isomorphic(second)
     one, other = explored(first, (0, 0)), explored(second, (0, 0))
@@ -136,7 +139,7 @@ def test_a_random_walk_is_as_long_as_another_way_says():
 
 
 def test_who_cannot_be_everywhere_in_time_says_so(monkeypatch):
-    monkeypatch.setattr(simulate, "PATIENCE", 1)
+    monkeypatch.setattr(robot, "PATIENCE", 1)
     assert random_walk(grid(3, 3).map, (0, 0)) is None
 
 

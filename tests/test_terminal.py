@@ -13,15 +13,15 @@ from collections import Counter
 
 import pytest
 from conftest import BIN, ROOT, TRIED, run
-from topomap import scenes
-from topomap.environment import by_bearing, flat_bearing, grid, lattice, maze, world
-from topomap.experience import explore
-from topomap.layout import layout, straight
-from topomap.query import Query
-from topomap.scenes import Scene
-from topomap.terminal import ARROWS, ASCII, BRAILLE, DOTS, LETTERS, text
-from topomap.topology import TopologicalMap
-from topomap.watch import Watch
+from topomap.drawing import scenes
+from topomap.drawing.layout import layout, straight
+from topomap.drawing.scenes import Scene
+from topomap.drawing.terminal import ARROWS, ASCII, BRAILLE, DOTS, LETTERS, text
+from topomap.model.experience import explore
+from topomap.model.query import Query
+from topomap.model.topology import TopologicalMap
+from topomap.runtime.watch import Watch
+from topomap.worlds.environment import by_bearing, flat_bearing, grid, lattice, maze, world
 
 RIGHT, DOWN, LEFT, UP = range(4)
 STEPS = (0, 1), (1, 0), (0, -1), (-1, 0)
@@ -508,7 +508,7 @@ def test_places_that_are_drawn_close_together_make_no_endless_picture(monkeypatc
         return laid
 
     scene = walk(lattice("triangles", 2, 2).map, 12, random.Random(1))
-    monkeypatch.setattr("topomap.terminal.layout", close)
+    monkeypatch.setattr("topomap.drawing.terminal.layout", close)
     rows, _ = printed(scene, 80)
     assert is_dots(rows)
     assert 80 < max(map(len, rows)) < 5 * 80

@@ -6,8 +6,8 @@ from dataclasses import replace
 import networkx as nx
 import pytest
 from conftest import Truth
-from topomap.environment import grid, lattice, world
-from topomap.topology import TopologicalMap
+from topomap.model.topology import TopologicalMap
+from topomap.worlds.environment import grid, lattice, world
 from worlds import random_experience, random_world
 
 

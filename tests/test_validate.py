@@ -16,10 +16,10 @@ from hypothesis import strategies as st
 from test_cli import BAD
 from test_input import KINDS, corrupted, errors
 from topomap import cli
-from topomap.environment import grid, lattice, maze
-from topomap.errors import InputError, printable
-from topomap.experience import HINT, SIGNATURES, parse, read
-from topomap.generate import instance
+from topomap.model.experience import HINT, SIGNATURES, parse, read
+from topomap.runtime.errors import InputError, printable
+from topomap.worlds.environment import grid, lattice, maze
+from topomap.worlds.instance import instance
 
 INSTANCES = sorted((ROOT / "instances").glob("*.lp"))
 GRID = ROOT / "instances/grid-3x3-snake.lp"

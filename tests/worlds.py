@@ -4,9 +4,9 @@ something that is easily got wrong, and random ones."""
 import random
 from dataclasses import replace
 
-from topomap.environment import grid, world
-from topomap.experience import Experience, explore
-from topomap.topology import TopologicalMap
+from topomap.model.experience import Experience, explore
+from topomap.model.topology import TopologicalMap
+from topomap.worlds.environment import grid, world
 
 
 def random_world(draw: random.Random) -> TopologicalMap:

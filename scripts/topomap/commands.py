@@ -13,27 +13,27 @@ from functools import partial
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any
 
-from topomap import formats
-from topomap.errors import InputError, say
-from topomap.experience import Experience, read
-from topomap.files import MOST_BYTES, output, text
-from topomap.folders import ENCODINGS, INSTANCES
-from topomap.found import UNPROVED, Cube, Found
-from topomap.journal import Journal
-from topomap.options import LARGEST, MOST_PLACES
-from topomap.query import Query
-from topomap.share import ALONE, Crew, crew
-from topomap.solver import Way, best
-from topomap.status import DONE, INTERRUPT, exit_status
-from topomap.topology import TopologicalMap
-from topomap.vocabulary import PARTS, PROPERTIES
-from topomap.watch import Attempt, Run, Stopped, Watch, heeding
+from topomap.model.experience import Experience, read
+from topomap.model.found import UNPROVED, Cube, Found
+from topomap.model.query import Query
+from topomap.model.topology import TopologicalMap
+from topomap.model.vocabulary import PARTS, PROPERTIES
+from topomap.runtime import formats
+from topomap.runtime.errors import InputError, say
+from topomap.runtime.files import MOST_BYTES, output, text
+from topomap.runtime.folders import ENCODINGS, INSTANCES
+from topomap.runtime.journal import Journal
+from topomap.runtime.limits import LARGEST, MOST_PLACES
+from topomap.runtime.status import DONE, INTERRUPT, exit_status
+from topomap.runtime.watch import Attempt, Run, Stopped, Watch, heeding
+from topomap.solver.share import ALONE, Crew, crew
+from topomap.solver.solving import Way, best
 
 # What only some subcommands need is loaded by them: most calls are done sooner than it loads.
 if TYPE_CHECKING:
-    from topomap.environment import Environment
-    from topomap.generate import Instance
-    from topomap.report import Report
+    from topomap.documents.answers import Report
+    from topomap.worlds.environment import Environment
+    from topomap.worlds.instance import Instance
 
 
 def path(args: argparse.Namespace) -> int:
@@ -45,7 +45,7 @@ def path(args: argparse.Namespace) -> int:
 
 def generate(args: argparse.Namespace) -> int:
     """Explore an environment and write the instance."""
-    from topomap.found import steps_json
+    from topomap.model.found import steps_json
 
     made = _instance(args)
     target = args.output
@@ -73,7 +73,7 @@ def generate(args: argparse.Namespace) -> int:
 
 def environment_of(args: argparse.Namespace) -> "Environment":
     """The environment that a call of ``generate`` or ``simulate`` names."""
-    from topomap import environment, network
+    from topomap.worlds import environment, network
 
     if args.kind == "network":
         world, warnings = network.load(args.file, args.slots, args.north)
@@ -92,7 +92,7 @@ def environment_of(args: argparse.Namespace) -> "Environment":
 
 
 def _instance(args: argparse.Namespace) -> "Instance":
-    from topomap.generate import instance
+    from topomap.worlds.instance import instance
 
     world = environment_of(args)
     if args.route == "walk" and args.steps is None:
@@ -117,9 +117,9 @@ def _query(args: argparse.Namespace) -> Query:
 
 def _run(args: argparse.Namespace, *experiences: Experience) -> dict[str, Any]:
     """What a run computes: a journal goes on with no other one."""
-    from topomap import solver
+    from topomap.solver import solving
 
-    texts = [solver.digest(), *(experience.facts() for experience in experiences)]
+    texts = [solving.digest(), *(experience.facts() for experience in experiences)]
     keys = ("by", "encoding", *PARTS, "optimal", "bound", "horizon")
     asked = {key: getattr(args, key, None) for key in keys}
     digest = hashlib.sha256("".join(texts).encode()).hexdigest()
@@ -128,7 +128,7 @@ def _run(args: argparse.Namespace, *experiences: Experience) -> dict[str, Any]:
 
 def solve(args: argparse.Namespace) -> int:
     """Enumerate the maps of each instance."""
-    from topomap.report import Report
+    from topomap.documents.answers import Report
 
     _with_noise(args)
     inputs = []
@@ -210,16 +210,17 @@ def _found(
 ) -> Iterator[Found]:
     """The maps that ``solve`` asks for; if all go to a file or there is a crew, part by part
     of the tree, each part a unit of the journal."""
-    from topomap import search, solver
+    from topomap.search import traversal
+    from topomap.solver import solving
 
     query = _query(args)
-    way = search.hypotheses if args.by == "search" else solver.hypotheses
+    way = traversal.hypotheses if args.by == "search" else solving.hypotheses
     if args.optimal:
         yield from filter(None, best(experience, query, watch, way))
     elif query.optimizes or (crew is ALONE and not journal.kept):
         yield from filter(None, way(experience, query, watch))
     else:
-        parts, depth = search.cubes(experience, query)
+        parts, depth = traversal.cubes(experience, query)
         done = 0
         known: set[Cube] = set()  # the maps of the part that was cut
         with watch.deadline.waiting():
@@ -234,7 +235,7 @@ def _found(
                     watch.found += 1
                     yield Found(at, query.kind)
         if args.by == "clingo":
-            solver.demand_cover(experience, query, watch, parts, depth)
+            solving.demand_cover(experience, query, watch, parts, depth)
         if crew is ALONE:
             left = way(experience, query, watch, cubes=parts[done:])
         else:
@@ -283,8 +284,8 @@ def _crew(args: argparse.Namespace) -> Crew:
 
 def _truth(file: str, experience: Experience, horizon: int | None) -> TopologicalMap:
     """The real map of an experience, from a file that ``generate --truth`` wrote."""
-    from topomap import maps
-    from topomap.check import STEP_RULES
+    from topomap.documents import maps
+    from topomap.documents.check import STEP_RULES
 
     entries = [entry for document in maps.read(file, MOST_BYTES) for entry in document.maps]
     if len(entries) != 1:
@@ -298,7 +299,7 @@ def _truth(file: str, experience: Experience, horizon: int | None) -> Topologica
 
 def check(args: argparse.Namespace) -> int:
     """Check maps that anyone made, by rules and by definition."""
-    from topomap import maps
+    from topomap.documents import maps
 
     documents = maps.read(args.maps)
     said = any(document.claims.get("noise") is not None for document in documents)
@@ -346,7 +347,7 @@ def check(args: argparse.Namespace) -> int:
 
 def count(args: argparse.Namespace) -> int:
     """Count the search tree of an instance, by clingo."""
-    from topomap.statistics import tree
+    from topomap.paper.statistics import tree
 
     experience = read(args.instance)
     figures: dict[str, Any] = {}
@@ -364,18 +365,18 @@ def count(args: argparse.Namespace) -> int:
 
 def search_tree(args: argparse.Namespace) -> int:
     """Search the tree of an instance: count it, or find a closed map best-first."""
-    from topomap import search
-    from topomap.statistics import KEYS, Tally
+    from topomap.paper.statistics import KEYS, Tally
+    from topomap.search import traversal
 
     experience = read(args.instance)
     query = _query(args)
     if args.order == "best":
         return _best_first(args, experience, query)
-    node = search.root(experience, query)
+    node = traversal.root(experience, query)
     tally = Tally(node.experience.steps)
     with output(args.output) as out:
         with Run(args.timeout) as run:
-            for _ in search.ORDERS[args.order](node, run.watch):
+            for _ in traversal.ORDERS[args.order](node, run.watch):
                 tally.add(node)
                 run.watch.found = tally.per_step[-1]
         fault = run.fault
@@ -392,14 +393,15 @@ def search_tree(args: argparse.Namespace) -> int:
 
 def _best_first(args: argparse.Namespace, experience: Experience, query: Query) -> int:
     """The paper's best-first search, with backtracking while the map is not closed."""
-    from topomap import maps, search
-    from topomap.report import Report
+    from topomap.documents import maps
+    from topomap.documents.answers import Report
+    from topomap.search import traversal
 
     nodes = 0
     with output(args.output) as out:
         report = Report(out, args.instance, experience, query, maps.BEST_FIRST, None, args.json)
         with Run(args.timeout) as run:
-            for node in search.best_first(search.root(experience, query), run.watch):
+            for node in traversal.best_first(traversal.root(experience, query), run.watch):
                 nodes += 1
                 if node.steps == node.experience.steps and node.closed():
                     report.add(Found(node.dstates, maps.BEST_FIRST, node.cost, proved=False))
@@ -416,8 +418,8 @@ def _write_figures(
 ) -> None:
     """Write what ``count`` gives, or ``search``; of a search that was cut, ``at_least`` holds
     what the nodes met until then come to."""
-    from topomap import figure4
-    from topomap.statistics import KEYS
+    from topomap.paper import figure4
+    from topomap.paper.statistics import KEYS
 
     if args.json:
         out.write(formats.line({"instance": args.instance, **figures}, fault))
@@ -435,7 +437,7 @@ def _write_figures(
 
 def branching_nodes(args: argparse.Namespace) -> int:
     """Check the paper's equation (1) at every branching node of the planar tree."""
-    from topomap import branching, search
+    from topomap.search import branching, traversal
 
     experience = read(args.instance)
     query = _query(args).having("planar")
@@ -445,7 +447,7 @@ def branching_nodes(args: argparse.Namespace) -> int:
             head = formats.headed({"instance": args.instance})
             out.write(json.dumps(head)[:-1] + ', "nodes": [')
         with Run(args.timeout) as run:
-            for node in branching.branching(search.root(experience, query), run.watch):
+            for node in branching.branching(traversal.root(experience, query), run.watch):
                 if args.json:
                     out.write(",\n" * (run.watch.found > 1) + json.dumps(node.json()))
                 summary.add(node)
@@ -461,7 +463,7 @@ def branching_nodes(args: argparse.Namespace) -> int:
 
 def table(args: argparse.Namespace) -> int:
     """Count the paper's table, or what is beyond it, print it and write it as JSON."""
-    from topomap import beyond, figure4
+    from topomap.paper import beyond, figure4
 
     name = "beyond" if args.beyond else "figure4"
     path = f"results/{name}.json" if args.output is None else args.output
@@ -510,7 +512,7 @@ def table(args: argparse.Namespace) -> int:
 def family(args: argparse.Namespace) -> int:
     """Write the call of each instance of a family where it changed, and drop what is no
     longer listed of what the last call made."""
-    from topomap.family import expand
+    from topomap.worlds.family import expand
 
     folder = Path(args.directory)
     calls: dict[str, str] = {}

@@ -7,18 +7,22 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import IO, Any
 
-from topomap import bisimulation, check, files, formats, maps, scenes, solver, words
-from topomap.bisimulation import Chart, Pair
-from topomap.errors import InputError, printable, say
-from topomap.experience import DState, Experience, read
-from topomap.explore import Plan, Prediction, Untold, plan, standing
-from topomap.found import steps_json
-from topomap.options import LARGEST
-from topomap.query import Query
-from topomap.status import NO, exit_status
-from topomap.topology import gid
-from topomap.vocabulary import PARTS
-from topomap.watch import Attempt, Watch, heeding
+from topomap.documents import bisimulation, check, maps
+from topomap.documents.bisimulation import Chart, Pair
+from topomap.drawing import scenes
+from topomap.model import words
+from topomap.model.experience import DState, Experience, read
+from topomap.model.found import steps_json
+from topomap.model.query import Query
+from topomap.model.topology import gid
+from topomap.model.vocabulary import PARTS
+from topomap.questions.explore import Plan, Prediction, Untold, plan, standing
+from topomap.runtime import files, formats
+from topomap.runtime.errors import InputError, printable, say
+from topomap.runtime.limits import LARGEST
+from topomap.runtime.status import NO, exit_status
+from topomap.runtime.watch import Attempt, Watch, heeding
+from topomap.solver import solving
 
 At = tuple[DState, ...]
 KINDS = {
@@ -102,7 +106,7 @@ def _among(
                     found.setdefault(tuple(scene.at), scene.kind)
                 continue
             with Attempt() as attempt:
-                for one in solver.hypotheses(whole, query.having(*KINDS[name]), watch):
+                for one in solving.hypotheses(whole, query.having(*KINDS[name]), watch):
                     if one is not None:
                         found.setdefault(one.at, name)
             fault = attempt.fault

@@ -7,16 +7,18 @@ import shutil
 import sys
 from pathlib import Path
 
-from topomap import exports, scenes, words
-from topomap.errors import InputError, say
-from topomap.extras import need
-from topomap.files import output
-from topomap.folders import INSTANCES
-from topomap.query import Query
-from topomap.scenes import Scene
-from topomap.status import DONE, INTERRUPTED, exit_status
-from topomap.vocabulary import PARTS
-from topomap.watch import Stopped, heeding
+from topomap.drawing import scenes
+from topomap.drawing.scenes import Scene
+from topomap.exchange import exports
+from topomap.model import words
+from topomap.model.query import Query
+from topomap.model.vocabulary import PARTS
+from topomap.runtime.errors import InputError, say
+from topomap.runtime.extras import need
+from topomap.runtime.files import output
+from topomap.runtime.folders import INSTANCES
+from topomap.runtime.status import DONE, INTERRUPTED, exit_status
+from topomap.runtime.watch import Stopped, heeding
 
 FORMATS = ("svg", "png", "pdf")
 LEAST, MOST = 20, 100  # columns of a terminal
@@ -43,7 +45,7 @@ def draw(args: argparse.Namespace) -> int:
     scene, status = _scene(args)
     if scene is not None:
         ready()
-        from topomap import draw  # matplotlib takes its time
+        from topomap.drawing import draw
 
         with output(args.output, binary=True) as file:
             draw.save(draw.picture([scene]), file, form)
@@ -57,7 +59,7 @@ def show(args: argparse.Namespace) -> int:
     if scene is None:
         return status
     ready()
-    from topomap import terminal  # scipy, too
+    from topomap.drawing import terminal
 
     columns = shutil.get_terminal_size().columns
     coloured = sys.stdout.isatty() and os.environ.get("TERM") != "dumb"
@@ -113,8 +115,8 @@ def figures(args: argparse.Namespace) -> int:
     """Draw the paper's figures, and some more, into a folder."""
     need("draw", "topomap figures")
     ready()
-    from topomap import draw
-    from topomap.figures import figures
+    from topomap.drawing import draw
+    from topomap.paper.figures import figures
 
     folder = Path(args.directory)
     with heeding() as watch:

@@ -6,21 +6,21 @@ import json
 from collections.abc import Iterator
 from typing import Any
 
-from topomap import formats
 from topomap.commands import environment_of
-from topomap.environment import Environment
-from topomap.errors import InputError
-from topomap.family import expand
-from topomap.files import output
-from topomap.options import MOST_STEPS
-from topomap.query import Query
-from topomap.simulate import ENDED, MOST_MAPS, Outcome, reached
-from topomap.simulate import simulate as explored
-from topomap.status import exit_status
-from topomap.topology import Gateway, TopologicalMap, label
-from topomap.vocabulary import PARTS
-from topomap.watch import Watch, heeding
-from topomap.words import number
+from topomap.model.query import Query
+from topomap.model.topology import Gateway, TopologicalMap, label
+from topomap.model.vocabulary import PARTS
+from topomap.model.words import number
+from topomap.questions.robot import ENDED, MOST_MAPS, Outcome, reached
+from topomap.questions.robot import simulate as explored
+from topomap.runtime import formats
+from topomap.runtime.errors import InputError
+from topomap.runtime.files import output
+from topomap.runtime.limits import MOST_STEPS
+from topomap.runtime.status import exit_status
+from topomap.runtime.watch import Watch, heeding
+from topomap.worlds.environment import Environment
+from topomap.worlds.family import expand
 
 STEPS = 20  # for each way
 ENDS = {

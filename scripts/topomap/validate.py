@@ -10,10 +10,11 @@ from collections.abc import Iterator
 from itertools import islice, pairwise
 from typing import Any
 
-from topomap import files, formats, words
-from topomap.errors import InputError, printable
-from topomap.experience import Experience, Facts, Fault
-from topomap.status import BAD_INPUT, DONE
+from topomap.model import words
+from topomap.model.experience import Experience, Facts, Fault
+from topomap.runtime import files, formats
+from topomap.runtime.errors import InputError, printable
+from topomap.runtime.status import BAD_INPUT, DONE
 
 MOST = 1000  # faults of a file that are told
 # So many turns back, each where there were other gateways, are strange, if there are no others:

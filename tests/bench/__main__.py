@@ -18,9 +18,9 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
-from topomap.errors import InputError, say
-from topomap.files import output
-from topomap.status import BAD_INPUT, DONE, INTERRUPTED, NO
+from topomap.runtime.errors import InputError, say
+from topomap.runtime.files import output
+from topomap.runtime.status import BAD_INPUT, DONE, INTERRUPTED, NO
 
 from bench import growth, jobs, measure, memory, report, rows
 from bench.rows import ROOT, WAYS

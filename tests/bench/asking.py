@@ -19,14 +19,15 @@ from pathlib import Path
 from typing import Any
 
 import walks
-from topomap import search, solver
-from topomap.environment import grid
-from topomap.experience import DState, read
-from topomap.explore import Standing
-from topomap.files import output
-from topomap.generate import Instance, instance
-from topomap.query import Query
-from topomap.watch import Watch
+from topomap.model.experience import DState, read
+from topomap.model.query import Query
+from topomap.questions.explore import Standing
+from topomap.runtime.files import output
+from topomap.runtime.watch import Watch
+from topomap.search import traversal
+from topomap.solver import solving
+from topomap.worlds.environment import grid
+from topomap.worlds.instance import Instance, instance
 
 ROOT = Path(__file__).resolve().parents[2]
 TIMES = 3
@@ -54,7 +55,7 @@ class Task:
 def maps(parts: tuple[str, ...], places: int | None) -> list[tuple[DState, ...]]:
     """The hypotheses of the 4x4 snake, by search."""
     query = Query(frozenset(parts), places)
-    found = search.hypotheses(read(ROOT / SNAKE), query, Watch())
+    found = traversal.hypotheses(read(ROOT / SNAKE), query, Watch())
     return [one.at for one in found if one]
 
 
@@ -77,7 +78,7 @@ def asked() -> str:
 
 def in_question(made: Instance) -> list[Standing]:
     """The optimal maps, by search, and the real one."""
-    found = solver.best(made.experience, Query(), Watch(), search.hypotheses)
+    found = solving.best(made.experience, Query(), Watch(), traversal.hypotheses)
     ats = [one.at for one in found if one and one.proved]
     return [walks.standing(made.experience, at) for at in (*ats, made.truth)]
 
@@ -85,7 +86,7 @@ def in_question(made: Instance) -> list[Standing]:
 def settled(walked: Path) -> str:
     """What the optimal maps of a walk through the 4x4 grid are, by search."""
     experience = read(walked)
-    found = solver.best(experience, Query(), Watch(), search.hypotheses)
+    found = solving.best(experience, Query(), Watch(), traversal.hypotheses)
     maps = [experience.map_of(one.at) for one in found if one and one.proved]
     real = replace(grid(4, 4).map, landmarks={})
     same = [replace(one, landmarks={}).isomorphic(real) for one in maps]

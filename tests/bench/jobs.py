@@ -3,13 +3,13 @@
 import time
 from typing import Any
 
-from topomap import share, solver
-from topomap.environment import grid
-from topomap.generate import instance
-from topomap.journal import Journal
-from topomap.query import Query
-from topomap.statistics import tree
-from topomap.watch import Watch
+from topomap.model.query import Query
+from topomap.paper.statistics import tree
+from topomap.runtime.journal import Journal
+from topomap.runtime.watch import Watch
+from topomap.solver import share, solving
+from topomap.worlds.environment import grid
+from topomap.worlds.instance import instance
 
 TASKS = {
     "5x5, planar, at most 25 places, 26 steps": ((5, 5), Query(frozenset(["planar"]), 25, 26)),
@@ -25,7 +25,7 @@ def speedup(jobs: int) -> list[dict[str, Any]]:
         experience = instance(grid(*size), "snake").experience
         seconds, figures = [], []
         for number in (1, jobs):
-            solver.forget()
+            solving.forget()
             figures.append({})
             begun = time.perf_counter()
             with share.crew(number) as crew:

@@ -15,7 +15,7 @@ from pathlib import Path
 from statistics import median
 from typing import Any
 
-from topomap.errors import InputError
+from topomap.runtime.errors import InputError
 
 from bench.rows import ROOT, Row
 

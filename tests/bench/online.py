@@ -13,12 +13,12 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from topomap import online, solver
-from topomap.experience import Experience, read
-from topomap.files import output
-from topomap.online import Follower
-from topomap.query import Query
-from topomap.watch import Stopped, Watch
+from topomap.model.experience import Experience, read
+from topomap.model.query import Query
+from topomap.runtime.files import output
+from topomap.runtime.watch import Stopped, Watch
+from topomap.solver import online, solving
+from topomap.solver.online import Follower
 
 ROOT = Path(__file__).resolve().parents[2]
 RUNS = [
@@ -60,13 +60,13 @@ def from_scratch(
     experience: Experience, query: Query, seconds: float
 ) -> tuple[int, list[online.DState], int]:
     """The number of hypotheses, the best maps, and the ground rules of the count."""
-    solver.forget()
+    solving.forget()
     watch = Watch(seconds)
-    number, _ = solver.count(experience, query, watch=watch, grown=False)
-    program = solver._last.program
+    number, _ = solving.count(experience, query, watch=watch, grown=False)
+    program = solving._last.program
     rules = int(program.control.statistics["problem"]["lp"]["rules"]) if program else 0
-    solver.forget()
-    best = [one.at for one in solver.best(experience, query, watch) if one and one.proved]
+    solving.forget()
+    best = [one.at for one in solving.best(experience, query, watch) if one and one.proved]
     return number, sorted(best), rules
 
 

@@ -11,7 +11,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-from topomap.files import output
+from topomap.runtime.files import output
 
 ROOT = Path(__file__).resolve().parents[2]
 TIMES = 21

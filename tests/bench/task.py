@@ -18,14 +18,16 @@ from pathlib import Path
 from typing import Any, ClassVar
 
 import clingo
-from topomap import figure4, search, solver
-from topomap.check import by_definition
-from topomap.experience import DState, Experience, read
-from topomap.hypothesis import Hypothesis
-from topomap.journal import Journal
-from topomap.query import Query
-from topomap.statistics import Tally, tree
-from topomap.watch import Stopped, Watch
+from topomap.documents.check import by_definition
+from topomap.model.experience import DState, Experience, read
+from topomap.model.query import Query
+from topomap.paper import figure4
+from topomap.paper.statistics import Tally, tree
+from topomap.runtime.journal import Journal
+from topomap.runtime.watch import Stopped, Watch
+from topomap.search import traversal
+from topomap.search.hypothesis import Hypothesis
+from topomap.solver import solving
 
 At = tuple[DState, ...]
 
@@ -57,7 +59,7 @@ class Control(clingo.Control):
 
 def told() -> dict[str, int]:
     """Rules, atoms, choices and conflicts of all clingos, unless one has not told them."""
-    solver.forget()
+    solving.forget()
     gc.collect()
     return dict(Control.figures) if Control.made == Control.told else {}
 
@@ -76,19 +78,19 @@ class Task:
 
 def counted(task: Task) -> int:
     """All maps, as ``topomap count`` has them: with no Python object for any."""
-    return solver.count(task.experience, task.query, grown=False)[0]
+    return solving.count(task.experience, task.query, grown=False)[0]
 
 
 def listed(task: Task) -> int:
     """All maps, as ``topomap solve`` has them."""
-    found = solver.hypotheses(task.experience, task.query, Watch())
+    found = solving.hypotheses(task.experience, task.query, Watch())
     task.found = [one.at for one in found if one]
     return len(task.found)
 
 
 def one(task: Task) -> int:
     """The first map."""
-    first = next(solver.hypotheses(task.experience, task.query, Watch()), None)
+    first = next(solving.hypotheses(task.experience, task.query, Watch()), None)
     task.found = [first.at] if first else []
     return len(task.found)
 
@@ -126,7 +128,7 @@ def table_by_search(task: Task) -> int:
     differences = 0
     for column, experience, query in _columns("plain"):
         tally = Tally(experience.steps)
-        for node in search.depth_first(search.root(experience, query)):
+        for node in traversal.depth_first(traversal.root(experience, query)):
             tally.add(node)
         task.nodes += sum(tally.per_step)
         differences += len(figure4.differences(column | tally.figures()))
@@ -142,10 +144,10 @@ def _columns(encoding: str) -> Iterator[tuple[dict[str, Any], Experience, Query]
 
 def _searched(task: Task) -> Iterator[Hypothesis]:
     """The nodes that stand for the maps, depth-first."""
-    rest = task.query.parts - set(search.PRUNING)
+    rest = task.query.parts - set(traversal.PRUNING)
     holds = {"closed": Hypothesis.closed, "travelled": Hypothesis.travelled}
     tests = [holds[part] for part in rest]
-    for node in search.depth_first(search.root(task.experience, task.query)):
+    for node in traversal.depth_first(traversal.root(task.experience, task.query)):
         task.nodes += 1
         if node.steps == task.experience.steps and all(test(node) for test in tests):
             yield node
@@ -185,7 +187,7 @@ def faults(task: Task) -> Iterator[str]:
 def main() -> None:
     given = json.load(sys.stdin)
     way = given["way"]
-    solver.FORMS["baseline"] = Path(given["baseline"])
+    solving.FORMS["baseline"] = Path(given["baseline"])
     task = Task(given["ask"], Query(), Experience(2, (frozenset([0]),), (), (frozenset(),)))
     about = {}
     if given["instance"]:

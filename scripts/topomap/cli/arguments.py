@@ -1,0 +1,223 @@
+"""The arguments that several subcommands have in common. Nothing is loaded here that help does
+not need."""
+
+import argparse
+import math
+import re
+from collections.abc import Iterable
+from typing import Any, NoReturn
+
+from topomap.model.vocabulary import FORMS, PARTS, PRUNING
+from topomap.runtime.errors import InputError
+from topomap.runtime.limits import LARGEST
+
+STATUS = """\
+exit status: 0 done; 1 the answer is no (the table differs, no map, an unsound map);
+2 bad input or usage; 3 partial (a limit, a time-out, no memory left); 130 interrupted"""
+
+
+class Parser(argparse.ArgumentParser):
+    """An argument parser whose errors are one line."""
+
+    def _print_message(self, message: str, file: Any = None) -> None:
+        print(message, end="")  # argparse's own passes over what cannot be written
+
+    def error(self, message: str) -> NoReturn:
+        raise InputError(f"{self.prog}: {message} (see {self.prog} --help)")
+
+
+def command(group: Any, name: str, help: str, example: str) -> Parser:
+    made: Parser = group.add_parser(
+        name,
+        help=help,
+        description=help[0].upper() + help[1:] + ".",
+        epilog=f"example:\n{example}\n\n{STATUS}",
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    made.set_defaults(command=name)
+    return made
+
+
+def number(kind: type, least: float, most: float = LARGEST) -> Any:
+    """An argument type: a finite number between bounds, with a plain word on what is not."""
+
+    def number(text: str) -> Any:
+        try:
+            value = kind(text) if re.fullmatch(r"[!-^a-~]+", text) else math.nan
+        except ValueError:
+            value = math.nan
+        if not least <= value <= most:
+            bounds = f"{least} or more" if most >= LARGEST else f"from {least} to {most}"
+            noun = "a whole number" if kind is int else "a number"
+            raise argparse.ArgumentTypeError(f"{text!r} is not {noun}, {bounds}")
+        return value
+
+    return number
+
+
+def add_start(add: Any, facing: str) -> None:
+    """Where an exploration starts, and what it can see."""
+    add(
+        "--start",
+        metavar="PLACE",
+        help="first place, such as 0,2 (default: the smallest)",
+    )
+    add(
+        "--facing",
+        type=number(int, 0),
+        metavar="SLOT",
+        help=f"gateway stood at first (default: {facing})",
+    )
+    add(
+        "--signs",
+        type=number(float, 0, 1),
+        default=0.0,
+        metavar="RATE",
+        help="share of places that carry their own name as a landmark",
+    )
+
+
+def add_environments(command: Parser, common: Parser, rest: str) -> Any:
+    """The worlds that can be explored; ``rest`` goes into their examples."""
+    name = command.prog.split()[-1]
+    kinds = command.add_subparsers(dest="kind", metavar="ENVIRONMENT", required=True)
+    for kind, help in (
+        ("grid", "a grid of places, four slots, slot 0 north"),
+        ("cylinder", "a grid whose rows are rings"),
+        ("torus", "a grid whose rows and columns are rings"),
+        ("maze", "a connected grid thinned with the seed"),
+        ("hexagons", "the corners of a sheet of hexagons, six slots"),
+        ("triangles", "a triangular lattice, six slots"),
+    ):
+        sub = environment(kinds, kind, common, help, f"{name} {kind} 3 4 {rest}")
+        of = "of hexagons" if kind == "hexagons" else "of places"
+        if kind == "triangles":
+            of = "of triangles, as networkx counts them"
+        sub.add_argument("rows", type=number(int, 1), help=f"rows {of}")
+        sub.add_argument("columns", type=number(int, 1), help=f"columns {of}")
+        if kind == "maze":
+            sub.add_argument(
+                "--thin",
+                type=number(float, 0, 1),
+                default=0.3,
+                metavar="RATE",
+                help="share of the ways to take away (default: %(default)s)",
+            )
+    help = (
+        "a street or corridor network with coordinates: ways are straight lines between "
+        "their ends, and two-way; loops are left out"
+    )
+    example = f"{name} network city.graphml --slots 4 --north 29 {rest}"
+    sub = environment(kinds, "network", common, help, example)
+    sub.add_argument("file", metavar="FILE.graphml")
+    sub.add_argument(
+        "--slots",
+        type=number(int, 2),
+        default=4,
+        metavar="K",
+        help="directions at a place, even (default: %(default)s)",
+    )
+    sub.add_argument(
+        "--north",
+        type=number(float, -LARGEST),
+        default=0.0,
+        metavar="DEGREES",
+        help="bearing of slot 0, clockwise of north (default: %(default)g)",
+    )
+    return kinds
+
+
+def environment(kinds: Any, kind: str, common: Parser, help: str, example: str) -> Parser:
+    added: Parser = kinds.add_parser(
+        kind,
+        parents=[common],
+        help=help,
+        description=help,
+        epilog=f"example:\n  topomap {example}",
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    return added
+
+
+def add_asked(
+    command: Parser, parts: Iterable[str], horizon: bool = True, limit: str = "stop after S seconds"
+) -> None:
+    """Which maps are asked for, and how long."""
+    add = command.add_argument
+    for part in parts:
+        add(f"--{part}", action="store_true", help=PARTS[part])
+    add("--bound", type=number(int, 1), metavar="B", help="at most B places")
+    if horizon:
+        add("--horizon", type=number(int, 0), metavar="T", help="cut the experience after step T")
+    add("--timeout", type=number(float, 0.001), metavar="S", help=limit)
+
+
+def add_query(command: Parser, parts: Iterable[str], horizon: bool = True) -> None:
+    add_asked(command, parts, horizon)
+    add = command.add_argument
+    add("--json", action="store_true", help="write JSON")
+    add("-o", "--output", metavar="FILE", help="file to write (default: stdout)")
+
+
+def add_optimal(command: Parser) -> None:
+    command.add_argument(
+        "--optimal",
+        action="store_true",
+        help="closed maps with consistent boundaries, fewest paths and places; "
+        "if there is none, the best so far: pending gateways allowed",
+    )
+
+
+def add_encoding(command: Parser) -> None:
+    command.add_argument(
+        "--encoding",
+        choices=FORMS,
+        default="fast",
+        help="which rules clingo is given: encodings/fast/, or those that state the theory "
+        "(default: %(default)s)",
+    )
+
+
+def add_resume(command: Parser) -> None:
+    command.add_argument(
+        "--resume",
+        action="store_true",
+        help="go on where the last run with this output file was cut; it left FILE.part",
+    )
+
+
+def add_crew(command: Parser, but: str = "") -> None:
+    group = command.add_mutually_exclusive_group()
+    group.add_argument(
+        "--jobs",
+        type=number(int, 1),
+        metavar="N",
+        help=f"share the work out among N processes{but} (default: 1)",
+    )
+    group.add_argument(
+        "--dask",
+        metavar="ADDRESS",
+        help="share it out among the workers of a running Dask cluster, such as "
+        "tcp://127.0.0.1:8786; they need this version of topomap (and here the extra dask: "
+        "pip install '.[dask]' in its folder)",
+    )
+
+
+def add_scene(command: Parser) -> None:
+    """Arguments of what shows a map."""
+    add = command.add_argument
+    add(
+        "file",
+        metavar="INSTANCE|MAPS.json",
+        help="an instance, of which the optimal maps are shown, or the best so far, with what "
+        "is asked for below; or maps, from topomap solve --json",
+    )
+    add(
+        "given",
+        nargs="?",
+        metavar="MAPS.json",
+        help="the maps of that instance to show instead, from clingo --outf=2 or topomap solve "
+        "--json (- is standard input)",
+    )
+    add("--map", type=number(int, 1), metavar="N", help="the N-th of the maps (default: 1)")
+    add_asked(command, PRUNING, limit="stop the search for maps after S seconds; then draw")

@@ -1,0 +1,22 @@
+"""The subcommand ``draw``."""
+
+from typing import Any
+
+from topomap.cli.arguments import add_scene, command
+
+
+def add(group: Any) -> None:
+    """The parser of ``topomap draw``."""
+    made = command(
+        group,
+        "draw",
+        "draw a map, as SVG, PNG or PDF",
+        """\
+  topomap draw instances/grid-4x4-snake.lp --map 2 -o map.svg
+  topomap solve instances/grid-3x3-snake.lp --closed --json -o maps.json
+  topomap draw maps.json --map 3 -o map.png""",
+    )
+    add_scene(made)
+    made.add_argument(
+        "-o", "--output", required=True, metavar="FILE", help="FILE.svg, FILE.png or FILE.pdf"
+    )

@@ -1,0 +1,22 @@
+"""The subcommand ``export``."""
+
+from typing import Any
+
+from topomap.cli.arguments import add_scene, command
+from topomap.runtime.limits import EXPORTS
+
+
+def add(group: Any) -> None:
+    """The parser of ``topomap export``."""
+    made = command(
+        group,
+        "export",
+        "write a map for other tools: GraphML, JSON (node-link), DOT, or facts for clingraph",
+        """\
+  topomap export instances/grid-4x4-snake.lp --map 2 --format graphml -o map.graphml
+  topomap export maps.json --format dot | neato -n2 -Tsvg -o map.svg
+  topomap export maps.json --format clingraph | clingraph --engine=neato --out=render""",
+    )
+    add_scene(made)
+    made.add_argument("--format", required=True, choices=EXPORTS)
+    made.add_argument("-o", "--output", metavar="FILE", help="file to write (default: stdout)")

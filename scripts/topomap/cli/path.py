@@ -1,0 +1,25 @@
+"""The subcommand ``path``."""
+
+from typing import Any
+
+from topomap.cli.arguments import command
+
+
+def add(group: Any) -> None:
+    """The parser of ``topomap path``."""
+    made = command(
+        group,
+        "path",
+        "print the folder of the encodings, for clingo, or that of the instances",
+        """\
+  topomap path
+  topomap clingo "$(topomap path)/topomap.lp" "$(topomap path instances)/grid-3x3-snake.lp" 0""",
+    )
+    made.add_argument(
+        "what",
+        nargs="?",
+        choices=("encodings", "instances"),
+        default="encodings",
+        help="which folder (default: %(default)s)",
+    )
+    made.add_argument("--json", action="store_true", help="write JSON: both folders")

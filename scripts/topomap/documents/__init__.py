@@ -1,0 +1,1 @@
+"""Maps as documents: written, read, and checked, whoever made them."""

@@ -1,0 +1,246 @@
+"""Checkers of maps: ``encodings/check.lp``, and one in Python that works from the definitions
+with networkx. Neither shares anything with what makes the maps.
+"""
+
+from collections.abc import Callable, Iterator, Sequence
+from itertools import combinations
+from typing import Any
+
+import clingo
+
+from topomap.model.experience import Experience
+from topomap.model.topology import Gateway
+from topomap.runtime import nx
+from topomap.runtime.folders import ENCODINGS
+
+At = Sequence[tuple[int, int, int]]  # at(T,P,S)
+Violation = tuple[str, int]
+PATH_RULES = {"path_twice", "path_circular"}
+STEP_RULES = {"exactly_one", "naming", "gateway", "view", "landmark", "marker", "schema"}
+
+
+def by_rules(experience: Experience, at: At, demands: Sequence[str] = ()) -> set[Violation]:
+    """What ``check.lp`` finds: rules, and the steps after which they are broken.
+
+    ``demands`` are terms: planar, bound(B), closed, travelled, boundary, perpendicular.
+    """
+    control = clingo.Control()
+    control.load(str(ENCODINGS / "check.lp"))
+    facts = [f"at({step},{place},{slot})." for step, place, slot in at]
+    facts += [f"demand({demand})." for demand in demands]
+    control.add("base", [], experience.facts() + "".join(facts))
+    control.ground()
+    atoms = control.symbolic_atoms.by_signature("violation", 2)
+    return {(str(atom.symbol.arguments[0]), atom.symbol.arguments[1].number) for atom in atoms}
+
+
+def by_definition(experience: Experience, at: At, demands: Sequence[str] = ()) -> set[Violation]:
+    """The same by the map after each step."""
+    found = {("exactly_one", step) for step, *_ in at if not 0 <= step <= experience.steps}
+    stands: dict[int, Gateway] = {}
+    last = max((0, *(step for step, *_ in at)))
+    steps = range(min(last, experience.steps) + 1)
+    for step in steps:
+        dstates = {(place, slot) for one, place, slot in at if one == step}
+        if len(dstates) != 1:
+            found.add(("exactly_one", step))
+        for place, slot in dstates:
+            if place > step or (place, place, 0) not in at:
+                found.add(("naming", step))
+            if place in steps and slot not in experience.views[place]:
+                found.add(("gateway", step))
+            elif place in steps and len(dstates) == 1:
+                stands[step] = place, slot
+    for step, (place, slot) in stands.items():
+        seen = {(slot + other) % experience.slots for other in experience.views[step]}
+        if seen != experience.views[place]:
+            found.add(("view", step))
+        if experience.landmarks[step] != experience.landmarks[place]:
+            found.add(("landmark", step))
+    for drop in experience.drops:
+        later = sorted(step for step in experience.picks if step > drop)
+        for step in range(drop + 1, min([*later, last]) + 1):
+            if {step, drop} <= stands.keys():
+                spotted = step in experience.markers | experience.picks
+                if spotted != (stands[step][0] == stands[drop][0]):
+                    found.add(("marker", step))
+    ends: dict[Gateway, set[Gateway]] = {}
+    for step, out, arrival in _ways(experience, stands):
+        ends.setdefault(out, set()).add(arrival)
+        ends.setdefault(arrival, set()).add(out)
+        if out == arrival or max(len(ends[out]), len(ends[arrival])) > 1:
+            found.add(("schema", step))
+    whole = Grown(experience, stands, last)
+    for rule in ("path_twice", "path_circular", *demands):
+        name, _, number = rule.rstrip(")").partition("(")
+        broken, limit = BROKEN[name], int(number or 0)
+        axiom = not PATH_RULES & {rule for rule, _ in found}
+        if not (axiom or name not in ("boundary", "perpendicular")) or not broken(whole, limit):
+            continue
+        step = 0 if name not in ("closed", "travelled") else last
+        while not broken(Grown(experience, stands, step), limit):
+            step += 1
+        found.add((rule, step))
+    return found
+
+
+def _ways(
+    experience: Experience, stands: dict[int, Gateway]
+) -> Iterator[tuple[int, Gateway, Gateway]]:
+    """The steps, with the gateways that they leave and arrive by."""
+    for step, turn in enumerate(experience.turns, 1):
+        if step in stands and step - 1 in stands:
+            place, slot = stands[step - 1]
+            yield step, (place, (slot + turn) % experience.slots), stands[step]
+
+
+class Grown:
+    """The map that the steps up to ``step`` make.
+
+    ``links``: the gateway at the other end of a link. ``ahead``: from each gateway, those
+    at which one arrives who leaves by it and walks straight on, in their order.
+    """
+
+    def __init__(self, experience: Experience, stands: dict[int, Gateway], step: int):
+        self.slots, self.half, self.step = experience.slots, experience.slots // 2, step
+        places = sorted({place for t, (place, _) in stands.items() if t <= step})
+        self.stars = {place: sorted(experience.views[place]) for place in places}
+        self.dstate = stands.get(step)
+        self.links: dict[Gateway, Gateway] = {}
+        for t, out, arrival in _ways(experience, stands):
+            if t <= step:
+                self.links.setdefault(out, arrival)
+                self.links.setdefault(arrival, out)
+        walks: nx.DiGraph[Gateway] = nx.DiGraph()
+        walks.add_edges_from((out, self.opposite(end)) for out, end in self.links.items())
+        self.ahead = {
+            out: [self.links[g] for g in nx.dfs_preorder_nodes(walks, out) if g in self.links]
+            for out in self.links
+        }
+
+    def opposite(self, gateway: Gateway) -> Gateway:
+        """The direction straight across the place."""
+        return gateway[0], (gateway[1] + self.half) % self.slots
+
+    def paths(self) -> list[list[Gateway]]:
+        """Each path, as its places with the slot of its heading."""
+        paths: set[tuple[Gateway, ...]] = set()
+        for place, star in self.stars.items():
+            for slot in star:
+                for start in (place, slot), self.opposite((place, slot)):
+                    path = [start, *map(self.opposite, self.ahead.get(start, []))]
+                    if path[1:] and path[-1] == start:  # it is circular
+                        paths.add(tuple(self.one_way(path[1:])))
+                    elif self.opposite(start) not in self.links:
+                        paths.add(tuple(self.one_way(path)))
+        return [list(path) for path in sorted(paths)]
+
+    def one_way(self, path: list[Gateway]) -> list[Gateway]:
+        """The least way to write a path down: it may be taken back, a circular one anywhere."""
+        ways = [path, [self.opposite(heading) for heading in reversed(path)]]
+        if path and self.links.get(path[-1]) == self.opposite(path[0]):
+            ways = [way[n:] + way[:n] for way in ways for n in range(len(way))]
+        return min(ways)
+
+    def path_twice(self, _: int) -> bool:
+        return any(
+            place == out[0] and (place, slot) != self.opposite(out)
+            for out, arrivals in self.ahead.items()
+            for place, slot in arrivals
+        )
+
+    def path_circular(self, _: int) -> bool:
+        return any(self.opposite(out) in arrivals for out, arrivals in self.ahead.items())
+
+    def pending(self) -> list[Gateway]:
+        """Gateways without a link."""
+        gateways = [(place, slot) for place, star in self.stars.items() for slot in star]
+        return [gateway for gateway in gateways if gateway not in self.links]
+
+    def untravelled(self, _: int) -> bool:
+        pending = self.pending()
+        return any(self.opposite(gateway) not in self.links for gateway in pending)
+
+    def embedding(self) -> "nx.PlanarEmbedding[Any]":
+        """The rotation system; a node for each end of a link parts parallel ones."""
+        embedding: nx.PlanarEmbedding[Any] = nx.PlanarEmbedding()
+        data: dict[Any, list[Any]] = {
+            place: [(place, slot) for slot in star if (place, slot) in self.links]
+            for place, star in self.stars.items()
+        }
+        for end, other in self.links.items():
+            data[end] = [end[0], other]
+        embedding.set_data(data)
+        return embedding
+
+    def crossed(self, _: int) -> bool:
+        """Whether the map is not planar."""
+        try:
+            self.embedding().check_structure()
+        except nx.NetworkXException:
+            return True
+        return False
+
+    def faces(self) -> list[list[Gateway]]:
+        """Each face as the gateways that its walk leaves by."""
+        embedding = self.embedding()
+        seen: set[tuple[Any, Any]] = set()
+        faces = []
+        for out in self.links:
+            if (out[0], out) not in seen:
+                walk = embedding.traverse_face(out[0], out, mark_half_edges=seen)
+                pairs = zip(walk, [*walk[1:], walk[0]], strict=True)
+                faces.append([end for place, end in pairs if place in self.stars])
+        return faces or [[]]
+
+    def genus(self) -> int:
+        """Genus, by Euler's formula."""
+        return (2 - len(self.stars) + len(self.links) // 2 - len(self.faces())) // 2
+
+    def over(self, bound: int) -> bool:
+        return len(self.stars) > bound
+
+    def one_sided(self, heading: Gateway) -> tuple[set[int], set[int], set[int]]:
+        """Of the path with this heading: its places, and those at its right and left."""
+        back = self.ahead.get(self.opposite(heading), [])
+        forth = self.ahead.get(heading, [])
+        headings = [heading, *back, *map(self.opposite, forth)]
+        beside: tuple[set[int], set[int]] = set(), set()
+        for place, slot in headings:
+            for other in self.stars[place]:
+                turn = (other - slot) % self.slots
+                if turn % self.half:
+                    met = {place for place, _ in self.ahead.get((place, other), [])}
+                    beside[turn > self.half].update(met)
+        return {place for place, _ in headings}, *beside
+
+    def two_sided(self, _: int) -> bool:
+        """Whether a place is left and right of a path, or on it and beside it."""
+        for place, star in self.stars.items():
+            for slot in star:
+                on, right, left = self.one_sided((place, slot))
+                if right & left or on & (right | left):
+                    return True
+        return False
+
+    def slanted(self, _: int) -> bool:
+        """Whether two paths share two places, or three meet pairwise at three."""
+        paths = [{place for place, _ in path} for path in self.paths()]
+        if any(len(a & b) > 1 for a, b in combinations(paths, 2)):
+            return True
+        meet = [(i, j) for i, j in combinations(range(len(paths)), 2) if paths[i] & paths[j]]
+        cliques: Iterator[list[int]] = nx.enumerate_all_cliques(nx.Graph(meet))
+        triples = ([paths[path] for path in clique] for clique in cliques if len(clique) == 3)
+        return any(len((a & b) | (b & c) | (a & c)) == 3 for a, b, c in triples)
+
+
+BROKEN: dict[str, Callable[[Grown, int], bool]] = {
+    "path_twice": Grown.path_twice,
+    "path_circular": Grown.path_circular,
+    "planar": Grown.crossed,
+    "bound": Grown.over,
+    "closed": lambda grown, _: bool(grown.pending()),
+    "travelled": Grown.untravelled,
+    "boundary": Grown.two_sided,
+    "perpendicular": Grown.slanted,
+}

@@ -1,0 +1,408 @@
+"""Pictures of maps, by matplotlib: the same bytes for the same map."""
+
+import re
+import warnings
+from collections.abc import Sequence
+from functools import cache
+from math import atan2, cos, sin
+from typing import IO, Any
+
+import matplotlib as mpl
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+from matplotlib.font_manager import findfont, get_font
+from matplotlib.legend import Legend
+from matplotlib.legend_handler import HandlerTuple
+from matplotlib.lines import Line2D
+from matplotlib.patches import Circle, Patch, PathPatch, Polygon
+from matplotlib.path import Path as Outline
+from matplotlib.textpath import TextPath
+from matplotlib.transforms import Bbox
+
+from topomap.drawing.bent import Points
+from topomap.drawing.layout import Layout, layout
+from topomap.drawing.scenes import Scene
+from topomap.drawing.svg import gaps
+from topomap.model import words
+from topomap.model.topology import Gateway, Place, TopologicalMap, gid, label
+
+INK, LINK, CROSSING, PENDING = "#1b1b1b", "#3d4a57", "#c2332d", "#2f7fc1"
+AGENT, SIGN, SIGNED, STEP = "#e07b00", "#2e7d4f", "#e7f5ea", "#5c6670"
+FACES = ("#dfeaf3", "#f6ead9", "#e3f0e0", "#efe3ef", "#f3f0d8", "#dff0ee")
+RADIUS = 0.15  # of a place's circle, where a link is of length 1
+DASHES: Any = (0, (4, 2))
+UNIT = 0.8  # inches that a link of length 1 takes
+MARGIN = 0.35  # round all lines
+LEAST, TITLE, WIDEST = 4.5, 9, 3.2  # inches of a picture; points, and inches, of a title
+STYLE: Any = {
+    "text.parse_math": False,  # a name may have a "$"
+    "svg.hashsalt": "topomap",
+    "svg.fonttype": "none",
+    "font.family": "DejaVu Sans",
+    "pdf.fonttype": 42,
+}
+
+
+Box = tuple[float, float, float, float]  # left, bottom, right, top
+
+
+def draw(axes: Axes, scene: Scene, faces: bool = True, route: bool = True) -> Layout:
+    """Draw a map into axes; returns where everything is. Of a map with links that cross others
+    the faces are not drawn: those of the planar part are not the map's."""
+    world = scene.world
+    at = scene.at
+    laid = layout(world, scene.ahead)
+    for gateway, line in laid.lines.items():
+        _draw_line(axes, world, laid, gateway, line)
+    for place, point in laid.places.items():
+        _draw_place(axes, world, laid, place, point)
+    texts: list[Box] = []
+    if route:
+        dots = {gateway: _even(line) for gateway, line in laid.lines.items()}
+        for gateway, steps in scene.steps().items():
+            own = gateway, world.links[gateway]
+            others = np.array([line for end, line in dots.items() if end not in own])
+            spots = others.reshape(-1, 2)
+            texts.append(_draw_steps(axes, laid, gateway, steps, spots))
+    taken = [(x - RADIUS, y - RADIUS, x + RADIUS, y + RADIUS) for x, y in laid.places.values()]
+    stubs = [line for end, line in laid.lines.items() if end not in world.links]
+    taken += [(*(line.min(0) - 0.05), *(line.max(0) + 0.05)) for line in stubs]
+    for place in laid.places:
+        if world.landmarks.get(place):
+            texts.append(_draw_signs(axes, world, laid, place, [*taken, *texts]))
+    points = np.concatenate([*laid.lines.values(), *([p] for p in laid.places.values())])
+    corners = np.array(texts).reshape(-1, 2)
+    low = np.min([*(points - MARGIN), *(corners - 0.06)], axis=0)
+    high = np.max([*(points + MARGIN), *(corners + 0.06)], axis=0)
+    if faces and not laid.crossing:
+        # Room for the number of the outer face, below all else.
+        low[1] = min([points[:, 1].min() - MARGIN - 0.12, *(corners[:, 1] - 0.26)])
+        _draw_faces(axes, laid, [*texts, *taken], low + 0.06)
+    if at:
+        _draw_agent(axes, laid, at[-1])
+    axes.set_title(title(scene, laid), fontsize=TITLE, color=INK, pad=5)
+    axes.set_aspect("equal")
+    axes.set_axis_off()
+    axes.set_xlim(low[0], high[0])
+    axes.set_ylim(low[1], high[1])
+    return laid
+
+
+def title(scene: Scene, laid: Layout) -> str:
+    """What the map is, and how many links cross others."""
+    count = len(laid.crossing)
+    others = "1 link crosses others" if count == 1 else f"{count} links cross others"
+    return f"{scene.title}, {others}" if count else scene.title
+
+
+@cache
+def _advance(letter: str) -> float:
+    """The width of a letter in the font, in ems; what it lacks may be shown by another one."""
+    font = get_font(findfont("DejaVu Sans"))
+    if not font.get_char_index(ord(letter)):
+        return 1.2
+    font.set_size(100, 72)
+    return float(font.load_char(ord(letter)).linearHoriAdvance) / 65536 / 100
+
+
+def extent(text: str, points: float) -> float:
+    """The width of a text in inches, at most: letters are fitted to dots, and may get wider."""
+    return 1.05 * sum(map(_advance, text)) * points / 72
+
+
+def _wrapped(text: str, inches: float) -> list[str]:
+    """The lines of a title."""
+    lines = []
+    for told in text.splitlines():
+        lines.append("")
+        for word in re.findall(r"\S+\s*|\s+", told):
+            if lines[-1] and extent(lines[-1] + word.rstrip(), TITLE) > inches:
+                lines.append("")
+            for letter in word:
+                if lines[-1] and letter != " " and extent(lines[-1] + letter, TITLE) > inches:
+                    lines.append("")
+                lines[-1] += letter
+    return [line.rstrip() for line in lines]
+
+
+def _draw_faces(axes: Axes, laid: Layout, taken: Sequence[Box], corner: Points) -> None:
+    """The faces and their numbers: far from what is there, that of the outer one in a corner."""
+    style: Any = {"color": "#767676", "fontsize": 9, "style": "italic"}
+    for number, face in enumerate(laid.faces):
+        if number == laid.outer:
+            name = f"{number + 1} (outer)"
+            x, y = corner
+            axes.text(x, y, name, **style, ha="left", va="bottom", gid=f"number-{number + 1}")
+            continue
+        outline = laid.outline(face)
+        colour = FACES[number % len(FACES)]
+        face_name = f"face-{number + 1}"
+        axes.add_patch(Polygon(outline, color=colour, lw=0, zorder=0.5, gid=face_name))
+        x, y = inside(outline, taken)
+        name = f"number-{number + 1}"
+        axes.text(x, y, str(number + 1), **style, ha="center", va="center", gid=name)
+
+
+def inside(outline: Points, taken: Sequence[Box] = (), grid: int = 24) -> Points:
+    """A point well inside a polygon: of a grid of points the one farthest from its line, and
+    from what is taken."""
+    low, high = outline.min(0), outline.max(0)
+    xs, ys = (np.linspace(low[axis], high[axis], grid + 2)[1:-1] for axis in (0, 1))
+    points = np.array([(x, y) for y in ys for x in xs])
+    points = points[Outline(outline).contains_points(points)]
+    if not len(points):
+        return np.asarray(outline.mean(0))
+    a, b = outline, np.roll(outline, -1, axis=0)
+    side = b - a
+    along = ((points[:, None] - a) * side).sum(-1) / np.maximum((side**2).sum(-1), 1e-12)
+    nearest = a + np.clip(along, 0, 1)[..., None] * side
+    far = np.linalg.norm(points[:, None] - nearest, axis=-1).min(1).round(6)
+    for x0, y0, x1, y1 in taken:
+        if x0 < high[0] and x1 > low[0] and y0 < high[1] and y1 > low[1]:
+            away = points - np.clip(points, (x0, y0), (x1, y1))
+            far = np.minimum(far, np.linalg.norm(away, axis=-1).round(6))
+    return np.asarray(points[far.argmax()])
+
+
+def _draw_line(
+    axes: Axes, world: TopologicalMap, laid: Layout, gateway: Gateway, line: Points
+) -> None:
+    name = gid(gateway)
+    crossing = [out for out, _ in laid.crossing]
+    if gateway not in world.links:
+        axes.plot(*line.T, color=PENDING, lw=1.8, solid_capstyle="round", gid=f"pending-{name}")
+        axes.plot(*line[-1], "o", ms=4, mfc="white", mec=PENDING, mew=1.2)
+    elif gateway in crossing:
+        name += "-to-" + gid(world.links[gateway])
+        axes.plot(*line.T, color=CROSSING, lw=1.6, ls=DASHES, gid=f"crossing-{name}")
+    elif all(gateway != end for _, end in laid.crossing) and gateway < world.links[gateway]:
+        name += "-to-" + gid(world.links[gateway])
+        axes.plot(*line.T, color=LINK, lw=2, solid_joinstyle="round", gid=f"link-{name}")
+
+
+def _draw_place(
+    axes: Axes, world: TopologicalMap, laid: Layout, place: Place, point: Points
+) -> None:
+    """A circle with a tick for each gateway, and a dot at gateway 0."""
+    face = SIGNED if world.landmarks.get(place) else "white"
+    name = label(place)
+    axes.add_patch(
+        Circle(tuple(point), RADIUS, fc=face, ec=INK, lw=1.2, zorder=4, gid=f"place-{name}")
+    )
+    ticks = []
+    for slot in sorted(world.stars[place]):
+        out = _out(laid.lines[place, slot])
+        ticks += [point + RADIUS * out, point + 1.4 * RADIUS * out]
+        if slot == 0:
+            dot = tuple(point + RADIUS * out)
+            axes.add_patch(
+                Circle(dot, 0.05, fc=INK, ec="white", lw=0.6, zorder=4.5, gid=f"zero-{name}")
+            )
+    if ticks:
+        codes = [Outline.MOVETO, Outline.LINETO] * (len(ticks) // 2)
+        path = Outline(np.array(ticks), codes)
+        style: Any = {"ec": INK, "lw": 3, "capstyle": "butt", "zorder": 4.2}
+        axes.add_patch(PathPatch(path, fill=False, **style, gid=f"ticks-{name}"))
+    x, y = point
+    size = min(7.0, 18 / len(name))
+    axes.text(x, y, name, fontsize=size, ha="center", va="center", color=INK, zorder=5)
+
+
+def _out(line: Points) -> Points:
+    """The direction in which a line leaves."""
+    return np.asarray((line[1] - line[0]) / np.linalg.norm(line[1] - line[0]))
+
+
+def _draw_signs(
+    axes: Axes, world: TopologicalMap, laid: Layout, place: Place, taken: Sequence[Box]
+) -> Box:
+    """The landmarks of a place, in the widest gap between the lines that leave it; if the text
+    covers something there, in that where it covers least. Returns where it is."""
+    text = words.signs(world.landmarks[place])
+    wide, high = extent(text, 7) / UNIT + 0.04, 7 * 1.2 / 72 / UNIT
+    outs = (_out(laid.lines[place, slot]) for slot in world.stars[place])
+    places: list[Box] = []
+    for gap, middle in gaps([atan2(y, x) for x, y in outs]):
+        if gap > 0.5 or not places:
+            x, y = laid.places[place] + 1.2 * RADIUS * np.array([cos(middle), sin(middle)])
+            side = 0 if abs(cos(middle)) < 0.3 else np.sign(cos(middle))
+            up = 0 if abs(sin(middle)) < 0.3 else np.sign(sin(middle))
+            left, bottom = x + (side - 1) * wide / 2, y + (up - 1) * high / 2
+            places.append((left, bottom, left + wide, bottom + high))
+    box = min(places, key=lambda box: round(sum(_shared(box, other) for other in taken), 3))
+    x, y = (box[0] + box[2]) / 2, (box[1] + box[3]) / 2
+    halo: Any = {"fc": "white", "lw": 0, "alpha": 0.8, "boxstyle": "round,pad=0.08"}
+    style: Any = {"ha": "center", "va": "center", "bbox": halo, "zorder": 6}
+    axes.text(x, y, text, fontsize=7, color=SIGN, gid=f"sign-{label(place)}", **style)
+    return box
+
+
+def _shared(one: Box, other: Box) -> float:
+    """How much two boxes have in common."""
+    wide, high = (min(one[n + 2], other[n + 2]) - max(one[n], other[n]) for n in (0, 1))
+    return max(0.0, wide) * max(0.0, high)
+
+
+def _even(line: Points, parts: int = 24) -> Points:
+    """Points on a line, in equal steps from its beginning to its end."""
+    along = np.concatenate([[0], np.linalg.norm(np.diff(line, axis=0), axis=1).cumsum()])
+    at = np.linspace(0, along[-1], parts + 1)
+    return np.stack([np.interp(at, along, line[:, axis]) for axis in (0, 1)], 1)
+
+
+def _draw_steps(
+    axes: Axes, laid: Layout, gateway: Gateway, steps: list[int], others: Points
+) -> Box:
+    """The numbers of the steps that leave by a gateway, on the right of the way; not near other
+    lines, of which there are points. Returns where they are."""
+    line = _even(laid.lines[gateway])
+    spots: list[tuple[float, int, Points, Points, Points]] = []
+    for k in (12, 7, 17):  # the middle, but where another line is near
+        ahead = (line[k + 2] - line[k - 2]) / np.linalg.norm(line[k + 2] - line[k - 2])
+        right = np.array([ahead[1], -ahead[0]])
+        away = np.linalg.norm(others - line[k] - 0.13 * right, axis=1).min(initial=1)
+        spots.append((-min(0.15, round(away, 3)), len(spots), line[k], ahead, right))
+    *_, middle, ahead, right = min(spots, key=lambda spot: spot[:2])
+    x, y = middle + 0.13 * right
+    text = " ".join(map(str, steps[:3])) + (" …" if len(steps) > 3 else "")
+    axes.text(
+        x,
+        y,
+        text,
+        fontsize=5.5,
+        color=STEP,
+        ha="center",
+        va="center",
+        rotation=_upright(ahead),
+        rotation_mode="anchor",
+        zorder=3,
+    )
+    tip = middle + 0.05 * right
+    axes.annotate(
+        "",
+        xy=tuple(tip + 0.09 * ahead),
+        xytext=tuple(tip - 0.09 * ahead),
+        arrowprops={"arrowstyle": "-|>", "lw": 0.6, "color": "#9aa4ae", "mutation_scale": 5},
+        zorder=3,
+    )
+    half = np.array([extent(text, 5.5), 5.5 / 72]) / UNIT / 2
+    wide, high = half @ abs(np.array([[ahead[0], ahead[1]], [ahead[1], ahead[0]]]))
+    return x - wide, y - high, x + wide, y + high
+
+
+def _upright(ahead: Points) -> float:
+    """The angle, in degrees, of a text along a line, not upside down."""
+    turn = float(np.degrees(np.arctan2(ahead[1], ahead[0]))) % 360
+    return turn - 180 if 90 < turn <= 270 else turn
+
+
+def _draw_agent(axes: Axes, laid: Layout, dstate: Gateway) -> None:
+    """The agent at the gateway where it stands."""
+    line = laid.lines[dstate]
+    out = line[1] - line[0]
+    out = out / np.linalg.norm(out)
+    side = np.array([-out[1], out[0]])
+    foot = line[0] + 1.25 * RADIUS * out
+    points = [foot + 0.17 * out, foot + 0.08 * side, foot - 0.08 * side]
+    axes.add_patch(
+        Polygon(points, fc=AGENT, ec="white", lw=0.6, zorder=7, gid=f"agent-{gid(dstate)}")
+    )
+
+
+def legend(figure: Figure, scenes: Sequence[Scene], inches: float) -> Legend:
+    """What the signs mean, of those that occur, in lines of some width at the foot of a
+    figure."""
+    worlds = [scene.world for scene in scenes]
+    dot = Line2D([], [], marker=Outline.circle((0, 1), 0.4), ls="", mfc=INK, mew=0, ms=11)
+    place: Any = {"marker": "o", "ls": "", "mec": INK, "ms": 8}
+    which = (Line2D([], [], mfc="white", **place), dot)
+    entries: list[tuple[Any, str]] = [(which, "place; the dot marks its gateway 0")]
+    if any(world.links for world in worlds):
+        entries.append((Line2D([], [], color=LINK, lw=2), "link"))
+    if any(world.pending() for world in worlds):
+        pending: Any = {"marker": "o", "mfc": "white", "mec": PENDING, "markevery": [1]}
+        line = Line2D([0, 1], [0, 0], color=PENDING, lw=1.8, **pending)
+        entries.append((line, "pending gateway"))
+    if any(world.genus() for world in worlds):
+        entries.append((Line2D([], [], color=CROSSING, lw=1.6, ls=DASHES), "link that crosses"))
+    if any(world.genus() == 0 and len(world.faces()) > 1 for world in worlds):
+        entries.append((Patch(fc=FACES[0]), "face"))
+    if any(any(world.landmarks.values()) for world in worlds):
+        entries.append((Line2D([], [], mfc=SIGNED, **place), "place with landmarks"))
+    if any(len(scene.at) > 1 for scene in scenes):
+        digit = TextPath((0, 0), "3", size=1)
+        middle = (digit.vertices.min(0) + digit.vertices.max(0)) / 2
+        marker = Outline(digit.vertices - middle, digit.codes)
+        entries.append((Line2D([], [], marker=marker, ls="", color=STEP, mew=0, ms=6), "step"))
+    if any(scene.at for scene in scenes):
+        entries.append((Line2D([], [], marker="^", ls="", color=AGENT, ms=7), "agent"))
+    handles, labels = zip(*entries, strict=True)
+    style: Any = {"loc": "lower center", "fontsize": 7, "frameon": False, "columnspacing": 1.5}
+    style["handler_map"] = {tuple: HandlerTuple(ndivide=1)}
+    for columns in range(len(entries), 0, -1):
+        made = figure.legend(handles, labels, ncols=columns, **style)
+        if columns == 1 or _inches(figure, made)[0] <= inches:
+            break
+        made.remove()
+    return made
+
+
+def _inches(figure: Figure, made: Legend) -> tuple[float, float]:
+    """Width and height of a legend."""
+    box = made.get_window_extent()
+    return box.width / figure.dpi, box.height / figure.dpi
+
+
+def picture(scenes: Sequence[Scene], columns: int = 3) -> Figure:
+    """Maps side by side, in one scale, each in the middle of as much room as the largest in its
+    row or column needs, below a title that is not wider; and a legend."""
+    with mpl.rc_context(STYLE):
+        figure = Figure()
+        FigureCanvasAgg(figure)
+        columns = min(columns, len(scenes))
+        panels = [figure.add_axes((0, 0, 1, 1)) for _ in scenes]
+        for scene, axes in zip(scenes, panels, strict=True):
+            draw(axes, scene)
+        spans = UNIT * np.array([_spans(axes) for axes in panels])
+        lines = [line for axes in panels for line in axes.get_title().splitlines()]
+        longest = max(extent(line, TITLE) for line in lines) + 0.2
+        least = max(LEAST / columns, min(longest, WIDEST))
+        wide = [max(least, *spans[n::columns, 0]) for n in range(columns)]
+        titles = [
+            _wrapped(axes.get_title(), wide[n % columns] - 0.2) for n, axes in enumerate(panels)
+        ]
+        rows = range(0, len(scenes), columns)
+        heads = [max(map(len, titles[n : n + columns])) * TITLE * 1.2 / 72 + 0.15 for n in rows]
+        high = [max(spans[n : n + columns, 1]) for n in rows]
+        foot = _inches(figure, legend(figure, scenes, sum(wide)))[1]
+        size = np.array([sum(wide), sum(heads) + sum(high) + foot])
+        figure.set_size_inches(*size)
+        for n, (axes, told) in enumerate(zip(panels, titles, strict=True)):
+            axes.set_title("\n".join(told), fontsize=TITLE, color=INK, pad=5)
+            row, column = divmod(n, columns)
+            x = sum(wide[:column]) + wide[column] / 2
+            y = size[1] - sum(heads[: row + 1]) - sum(high[:row]) - high[row] / 2
+            # As high as the row, so that the titles are in line.
+            half = np.array([spans[n, 0], high[row]]) / 2
+            low, top = axes.get_ylim()
+            middle = (low + top) / 2
+            axes.set_ylim(middle - half[1] / UNIT, middle + half[1] / UNIT)
+            centre = np.array([x, y])
+            axes.set_position(Bbox([(centre - half) / size, (centre + half) / size]))
+    return figure
+
+
+def _spans(axes: Axes) -> tuple[float, float]:
+    """Width and height of what axes show."""
+    (x0, x1), (y0, y1) = axes.get_xlim(), axes.get_ylim()
+    return x1 - x0, y1 - y0
+
+
+def save(figure: Figure, file: IO[bytes], format: str) -> None:
+    """Write a figure: svg, png or pdf, without the date."""
+    about = {"svg": {"Date": None}, "pdf": {"CreationDate": None}, "png": {"Software": None}}
+    with mpl.rc_context(STYLE), warnings.catch_warnings():
+        warnings.filterwarnings("ignore", "Glyph .* missing from font")
+        figure.savefig(file, format=format, metadata=about[format], dpi=150)

@@ -1,0 +1,230 @@
+"""Maps to be shown: the best ones of an instance, or those in a file of maps."""
+
+from collections import Counter, defaultdict
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from pathlib import PurePath
+from typing import Any
+
+from topomap.documents import maps
+from topomap.documents.check import STEP_RULES
+from topomap.model.experience import MOST_SLOTS, Experience, parse
+from topomap.model.found import UNPROVED, Found
+from topomap.model.query import Query
+from topomap.model.topology import Gateway, TopologicalMap
+from topomap.model.words import markers, short
+from topomap.runtime import nx
+from topomap.runtime.errors import InputError, printable
+from topomap.runtime.files import text
+from topomap.runtime.limits import LARGEST
+from topomap.runtime.watch import Attempt, Watch
+from topomap.solver import solving
+
+MOST_PLACES = 1000  # in a picture
+
+
+@dataclass(frozen=True)
+class Scene:
+    """A map, and the dstate after each step of the route in it, from step 0 (or none).
+
+    ``name`` says where it is from; ``number`` of ``many`` such maps, which are all if ``whole``;
+    ``kind`` what they are; if it is not known, they are all that were given. ``caption`` is a
+    title instead of these. ``marker`` says where the marker was put down, seen and taken up, if
+    it was.
+    """
+
+    world: TopologicalMap
+    at: Sequence[Gateway]
+    name: str
+    number: int = 1
+    many: int = 1
+    kind: str = ""
+    caption: str = ""
+    whole: bool = False
+    marker: str = ""
+
+    @property
+    def title(self) -> str:
+        """What the map is, in two lines; an instance by the stem of its file."""
+        world = self.world
+        which = f"map {self.number} of {self.many}"
+        if not self.whole:
+            which += " found"
+        elif self.many == 1:
+            which = "the only map"
+        if self.whole and not self.kind:
+            which += " given"
+        genus = world.genus()
+        sizes = [
+            _number(len(world.stars), "place"),
+            _number(len(world.links) // 2, "link"),
+            _number(len(world.paths()), "path"),
+            "planar" if genus == 0 else f"genus {genus}",
+        ]
+        name = short(PurePath(printable(self.name)).stem, 100)
+        kind = short(printable(self.kind), 60)
+        title = self.caption or f"{name}: {which}{f', {kind}' * bool(kind)}"
+        return f"{title}\n{', '.join(sizes)}"
+
+    @property
+    def ahead(self) -> Gateway | None:
+        """The gateway that is left first, if one is: it leads to the right of a picture."""
+        return self.world.links[self.at[1]] if len(self.at) > 1 else None
+
+    def steps(self) -> dict[Gateway, list[int]]:
+        """The steps that leave by each gateway."""
+        found: dict[Gateway, list[int]] = defaultdict(list)
+        for step, arrival in enumerate(self.at[1:], 1):
+            found[self.world.links[arrival]].append(step)
+        return found
+
+
+def _number(number: int, noun: str) -> str:
+    return f"{number} {noun}{'s' * (number != 1)}"
+
+
+def read(
+    path: str, query: Query, watch: Watch, given: str | None = None
+) -> tuple[list[Scene], str | None]:
+    """The maps of a file, and why they may not be all of them, if so.
+
+    Of an instance they are the optimal ones, or the best so far, that have the parts of the
+    query, or with a file of maps ``given`` those in it; of a text of ``solve --json`` those in it.
+    Raises InputError, one line.
+    """
+    if given is not None:
+        if query != Query(frozenset()):
+            raise InputError(f"{given}: the maps are given: parts, bound, horizon are of none")
+        if path == given == "-":
+            raise InputError("-: standard input is the instance or the maps, not both")
+        documents = maps.of_instance(maps.read(given), path)
+        if not documents:
+            raise InputError(f"{given}: no maps of {path} in it")
+        noisy = any("misread" in entry for document in documents for entry in document.maps)
+        seen = parse(text(path), path, noisy)
+        return [scene for one in documents for scene in of_instance(seen, path, one)], None
+    content = text(path, maps.MOST_BYTES)
+    if content.lstrip()[:1] in ("{", "["):
+        if query != Query(frozenset()):
+            raise InputError(f"{path}: maps, and no instance: parts, bound, horizon are of none")
+        return [
+            scene for document in maps.parse(content, path) for scene in of_document(document)
+        ], None
+    return best(parse(content, path), path, query, watch)
+
+
+def of_instance(seen: Experience, name: str, document: maps.Document) -> list[Scene]:
+    """The maps of a document that tells no more of them than ``at``, as clingo does, or whatever
+    else it tells. Raises InputError, one line, if one is none of this experience."""
+    scenes = []
+    many = len(document.best)
+    for number, (place, entry) in enumerate(document.best, 1):
+        where = f"{document.where}: map {place}"
+        last = len(entry["at"]) - 1
+        if not 0 <= last <= seen.steps:
+            raise InputError(f"{where}: {last} steps, the instance has {seen.steps}")
+        try:
+            corrected = seen.corrected(maps.misread_of(seen, entry)).cut(last)
+        except (LookupError, TypeError, ValueError):
+            raise InputError(f"{where}: misread: not what topomap solve --json writes") from None
+        if left := corrected.misled():
+            fault = "the agent stands at no gateway or leaves by none"
+            raise InputError(f"{where}: step {left[0]}: {fault}")
+        at = maps.hypothesis(where, entry["at"], corrected, rules=STEP_RULES)
+        scenes.append(
+            Scene(
+                *(corrected.map_of(at), at, name, number, many, document.kind),
+                whole=document.whole,
+                marker=markers(corrected, at),
+            )
+        )
+    return scenes
+
+
+def best(
+    experience: Experience, name: str, query: Query, watch: Watch
+) -> tuple[list[Scene], str | None]:
+    """The optimal maps, or the best so far, in order; and why they may not be all, if so."""
+    found: list[Found] = []
+    with Attempt() as attempt:
+        for one in filter(None, solving.best(experience, query, watch, solving.hypotheses)):
+            if not (one.proved and found and found[0].proved):  # better than those before
+                found.clear()
+            found.append(one)
+    found.sort(key=lambda one: one.at)
+    kinds = [one.kind if one.proved else UNPROVED for one in found]
+    return [
+        Scene(
+            *(experience.map_of(one.at), one.at, name, number, len(found), kind),
+            whole=not attempt.fault,
+            marker=markers(experience, one.at),
+        )
+        for number, (one, kind) in enumerate(zip(found, kinds, strict=True), 1)
+    ], attempt.fault
+
+
+def of_document(document: maps.Document) -> list[Scene]:
+    """The maps of a document. Raises InputError if one is none."""
+    name = str(document.claims.get("instance") or document.where)
+    slots = document.claims.get("slots")
+    if document.by_clingo and document.maps:
+        raise InputError(
+            f"{document.where}: maps from clingo: the instance is wanted before them, "
+            f"as in topomap show INSTANCE {document.where}"
+        )
+    scenes = []
+    for number, entry in enumerate(document.maps, 1):
+        where = f"{document.where}: map {number}"
+        if slots is None or not {"places", "links"} <= set(entry):
+            raise InputError(f"{where}: slots, places and links are wanted, as solve --json writes")
+        world = world_of(slots, entry, where)
+        if sorted(step for step, _, _ in entry["at"]) != list(range(len(entry["at"]))):
+            raise InputError(f"{where}: the steps of at are not 0, 1, 2, ..., each once")
+        at = [(place, slot) for _, place, slot in sorted(entry["at"])]
+        if any(world.links.get(b, (None,))[0] != a[0] for a, b in pairwise(at)):
+            raise InputError(f"{where}: at goes by links that are not there")
+        if at and at[0] not in world.gateways():
+            raise InputError(f"{where}: at begins at a gateway that is not there")
+        many = len(document.maps)
+        rest = name, number, many, document.kind
+        scenes.append(Scene(world, at, *rest, whole=document.whole))
+    return scenes
+
+
+def world_of(slots: int, entry: dict[str, Any], where: str) -> TopologicalMap:
+    """The map that ``places`` and ``links`` describe. Raises InputError if it is none: if it is
+    in parts, a gateway has two links, or is not there."""
+    try:
+        stars = {
+            int(place["place"]): frozenset(int(slot) for slot in place["gateways"])
+            for place in entry["places"]
+        }
+        landmarks = {
+            int(place["place"]): frozenset(map(str, place["landmarks"]))
+            for place in entry["places"]
+        }
+        if len(stars) != len(entry["places"]):
+            raise ValueError
+        pairs = [tuple((int(p), int(s)) for p, s in link) for link in entry["links"]]
+        ends = [end for link in pairs for end in link]
+        links = {a: b for one, other in pairs for a, b in ((one, other), (other, one))}
+        if any(abs(place) > LARGEST for place in stars):
+            raise ValueError
+    except (LookupError, TypeError, ValueError, OverflowError):
+        raise InputError(f"{where}: places or links are not as solve --json writes them") from None
+    if not stars or len(stars) > MOST_PLACES:
+        raise InputError(f"{where}: {len(stars)} places; a picture has 1 to {MOST_PLACES}")
+    if not 2 <= slots <= MOST_SLOTS or slots % 2:
+        raise InputError(f"{where}: slots is not an even number from 2 to {MOST_SLOTS}")
+    times = Counter(ends)
+    for place, slot in ends:
+        if slot not in stars.get(place, ()) or times[place, slot] > 1:
+            raise InputError(f"{where}: link at place {place}, gateway {slot}: not there, or two")
+    if any(not 0 <= slot < slots for star in stars.values() for slot in star):
+        raise InputError(f"{where}: a gateway is not from 0 to {slots - 1}")
+    graph = nx.Graph([(a[0], b[0]) for a, b in links.items()])
+    graph.add_nodes_from(stars)
+    if not nx.is_connected(graph):
+        raise InputError(f"{where}: the map is in parts")
+    return TopologicalMap(slots, stars, links, landmarks)

@@ -1,0 +1,1 @@
+"""Maps for other tools, and back."""

@@ -1,0 +1,249 @@
+"""Maps for other tools: GraphML and JSON (node-link), which can be read back, DOT and clingraph.
+
+As a graph a map is a networkx MultiGraph: a node is a place, an edge a link. Lists are JSON
+texts in GraphML, which has none.
+"""
+
+import json
+from collections.abc import Callable, Iterator
+from itertools import pairwise
+from typing import TYPE_CHECKING, Any
+
+import clingo
+
+from topomap.documents import maps
+from topomap.documents.answers import map_json
+from topomap.drawing.scenes import Scene, of_document
+from topomap.model.found import steps_json
+from topomap.model.topology import Gateway, Place, gid
+from topomap.runtime import formats, nx
+from topomap.runtime.errors import InputError, printable
+from topomap.runtime.files import data
+from topomap.runtime.limits import EXPORTS
+from topomap.worlds.network import read_graphml
+
+if TYPE_CHECKING:
+    from topomap.drawing.bent import Points
+
+Node = tuple[Place | Gateway, dict[str, str]]
+Edge = tuple[Place | Gateway, Place | Gateway, dict[str, str]]
+LISTS = {"at", "gateways", "landmarks", "ends", "steps", "back"}  # attributes that are lists
+POINTS, RADIUS = 72, 0.15  # that a link of length 1 takes, in DOT; of a place, in such lengths
+COMMON = {
+    "graph": {"inputscale": "72"},  # what says that positions are in points
+    "graph_nodes": {
+        "shape": "circle",
+        "width": f"{2 * RADIUS:g}",
+        "fixedsize": "true",
+        "style": "filled",
+        "fillcolor": "white",
+    },
+}
+STUB = {"shape": "point", "width": "0.06"}
+
+
+def graph_of(scene: Scene) -> "nx.MultiGraph[int]":
+    """The map as a graph.
+
+    Of the graph ``at`` is the route, ``[[T,P,S], ...]``; of a node the attributes are its
+    ``gateways`` and ``landmarks``; of an edge its ``ends``, two gateways ``[P,S]``, and the
+    ``steps`` that travel it from the first to the second, and ``back``.
+    """
+    world = scene.world
+    graph: nx.MultiGraph[int] = nx.MultiGraph(
+        name=printable(scene.name),
+        kind=scene.kind,
+        slots=world.slots,
+        genus=world.genus(),
+        at=steps_json(scene.at),
+    )
+    for place, star in world.stars.items():
+        signs = sorted(world.landmarks.get(place, ()))
+        graph.add_node(place, gateways=sorted(star), landmarks=signs)
+    steps = scene.steps()
+    for number, (a, b) in enumerate(world.edges(), 1):
+        there, back = steps.get(a, []), steps.get(b, [])
+        graph.add_edge(a[0], b[0], number, ends=[list(a), list(b)], steps=there, back=back)
+    return graph
+
+
+def graphml(scene: Scene) -> str:
+    """The map as GraphML."""
+    graph = graph_of(scene)
+    every = [graph.graph, *graph.nodes.values(), *graph.edges.values()]
+    for attributes in every:
+        attributes.update({key: json.dumps(attributes[key]) for key in LISTS & set(attributes)})
+    return "\n".join(nx.generate_graphml(graph, named_key_ids=True)) + "\n"
+
+
+def node_link(scene: Scene) -> str:
+    """The map as node-link JSON."""
+    return json.dumps(formats.headed(nx.node_link_data(graph_of(scene), edges="edges"))) + "\n"
+
+
+def read(file: str) -> str:
+    """What ``solve --json`` writes of the map in a file of GraphML or node-link JSON. Raises
+    InputError, one line, if there is none that ``export`` writes."""
+    content = data(file)
+    if content.lstrip(b"\xef\xbb\xbf \t\r\n")[:1] == b"<":
+        graph = read_graphml(file, content, int)
+    else:
+        try:
+            told = json.loads(content)
+            formats.demand(file, told)
+            graph = nx.node_link_graph(told, edges="edges")
+        except (MemoryError, InputError):
+            raise
+        except Exception:  # networkx checks nothing
+            raise InputError(f"{file}: not a graph in JSON that networkx reads") from None
+    return _read(file, graph)
+
+
+def _read(file: str, graph: "nx.Graph[Any]") -> str:
+    given = graph.graph
+    if graph.is_directed() or not isinstance(given, dict) or not {"slots", "at"} <= set(given):
+        raise InputError(
+            f"{file}: not a map, as topomap export writes it: no slots, or no route at"
+        )
+    try:
+        for attributes in (given, *graph.nodes.values(), *graph.edges.values()):
+            for key in LISTS & set(attributes):
+                if isinstance(attributes[key], str):
+                    attributes[key] = json.loads(attributes[key])
+    except (ValueError, RecursionError):
+        raise InputError(f"{file}: {key} is not a list, as topomap export writes it") from None
+    kind = given.get("kind") if given.get("kind") in maps.KINDS else None
+    entry = {
+        "at": given["at"],
+        "places": [{**attributes, "place": place} for place, attributes in graph.nodes.items()],
+        "links": [attributes.get("ends") for attributes in graph.edges.values()],
+    }
+    claims = {
+        "instance": given.get("name"),
+        "slots": given["slots"],
+        "parts": [],
+        "bound": None,
+        "optimal": kind in maps.BEST,
+    }
+    (scene,) = of_document(maps.document(file, {**claims, "maps": [entry], "kind": kind}))
+    if not scene.at:
+        raise InputError(f"{file}: no route in it")
+    try:
+        same = _told(graph) == _told(graph_of(scene))
+    except RecursionError:
+        same = False
+    if not same:
+        raise InputError(f"{file}: gateways, landmarks, steps or genus do not fit the links and at")
+    claims["horizon"] = len(scene.at) - 1
+    # There may be more maps of that kind than this one.
+    made = {**claims, "maps": [map_json(scene.world, scene.at)], "kind": kind, "count": 1}
+    return formats.line(made, "a single map, imported")
+
+
+def _told(graph: "nx.Graph[Any]") -> str:
+    """What a graph says of a map, but for names: other tools may add what they like."""
+    whole = [graph.graph.get(key) for key in ("slots", "genus", "at")]
+    places = [
+        [place, *(attributes.get(key) for key in ("gateways", "landmarks"))]
+        for place, attributes in graph.nodes.items()
+    ]
+    links = [
+        [sorted([a, b], key=str), *(attributes.get(key) for key in ("ends", "steps", "back"))]
+        for a, b, attributes in graph.edges(data=True)
+    ]
+    return json.dumps([whole, places, sorted(links, key=str)])
+
+
+def _drawing(scene: Scene) -> tuple[list[Node], list[Edge]]:
+    """The map where ``draw`` has it, in attributes of Graphviz, lengths in points. The stub of a
+    pending gateway ends in a node of its own; a link that crosses others is dashed."""
+    from topomap.drawing.layout import layout  # scipy takes its time
+
+    world = scene.world
+    laid = layout(world, scene.ahead)
+    steps = scene.steps()
+    nodes: list[Node] = []
+    edges: list[Edge] = []
+    for place, point in laid.places.items():
+        signs = ", ".join(sorted(world.landmarks.get(place, ())))
+        nodes.append((place, {"pos": f"{_point(point)}!"} | ({"xlabel": signs} if signs else {})))
+    crossing = [out for out, _ in laid.crossing]
+    for a, b in world.edges():
+        slots = {"taillabel": str(a[1]), "headlabel": str(b[1])}
+        travelled = zip(("steps", "back"), (steps.get(a, ()), steps.get(b, ())), strict=True)
+        told = slots | {key: " ".join(map(str, those)) for key, those in travelled if those}
+        told |= {"style": "dashed"} if a in crossing else {}
+        told["pos"] = _spline(laid.lines[a], 2)
+        edges.append((a[0], b[0], told))
+    for a in world.pending():
+        nodes.append((a, {"pos": f"{_point(laid.lines[a][-1])}!", **STUB}))
+        edges.append((a[0], a, {"taillabel": str(a[1]), "pos": _spline(laid.lines[a], 1)}))
+    return nodes, edges
+
+
+def _point(point: "Points") -> str:
+    # 0 is added to what is rounded: -0 becomes 0.
+    return ",".join(f"{round(float(number) * POINTS, 2) + 0:g}" for number in point)
+
+
+def _spline(line: "Points", ends: int) -> str:
+    """A line as a spline: each of its sides is one, with control points at its thirds. It begins,
+    and if it has two ``ends`` it ends, at the circle of a place."""
+    line = line.copy()
+    for here, there in ((0, 1), (-1, -2))[:ends]:
+        way = line[there] - line[here]
+        line[here] += way * min(0.5, RADIUS / float((way @ way) ** 0.5))
+    parts = (_point(a + (b - a) * k / 3) for a, b in pairwise(line) for k in (1, 2, 3))
+    return " ".join([_point(line[0]), *parts])
+
+
+def dot(scene: Scene) -> str:
+    """The map in the language of Graphviz: ``neato -n2`` draws it as ``draw`` does."""
+
+    def name(node: Place | Gateway) -> str:
+        return f'"{gid(node)}"' if isinstance(node, tuple) else f'"{node}"'
+
+    def told(attributes: dict[str, str]) -> str:
+        quoted = ((k, escaped(v).replace('"', '\\"')) for k, v in attributes.items())
+        return "[" + ", ".join(f'{key}="{value}"' for key, value in quoted) + "];"
+
+    nodes, edges = _drawing(scene)
+    lines = [f"  graph {told({**COMMON['graph'], 'label': scene.title})}"]
+    lines.append(f"  node {told(COMMON['graph_nodes'])}")
+    lines += [f"  {name(node)} {told(attributes)}" for node, attributes in nodes]
+    lines += [f"  {name(a)} -- {name(b)} {told(attributes)}" for a, b, attributes in edges]
+    return "\n".join(["graph topomap {", *lines, "}"]) + "\n"
+
+
+def escaped(text: str) -> str:
+    """A text as Graphviz reads texts in which a backslash begins a sign."""
+    return "\\n".join(printable(line).replace("\\", "\\\\") for line in text.split("\n"))
+
+
+def clingraph(scene: Scene) -> str:
+    """The map as facts of clingraph, for its default graph and the engine neato."""
+
+    def told(kind: str, identifier: str, attributes: dict[str, str]) -> Iterator[str]:
+        for key, value in attributes.items():
+            # A value by a variable, here the key, is no template of clingraph.
+            string = clingo.String(escaped(value))
+            yield f"attr({kind},{identifier},({key},value),{string})."
+
+    nodes, edges = _drawing(scene)
+    facts = [*told("graph", "default", {**COMMON["graph"], "label": scene.title})]
+    facts += told("graph_nodes", "default", COMMON["graph_nodes"])
+    for node, attributes in nodes:
+        facts += [f"node({_term(node)}).", *told("node", _term(node), attributes)]
+    for number, (a, b, attributes) in enumerate(edges, 1):
+        edge = f"({_term(a)},{_term(b)},{number})"
+        facts += [f"edge({edge}).", *told("edge", edge, attributes)]
+    return "\n".join(facts) + "\n"
+
+
+def _term(node: Place | Gateway) -> str:
+    return f"({node[0]},{node[1]})" if isinstance(node, tuple) else str(node)
+
+
+FORMATS: dict[str, Callable[[Scene], str]] = dict(
+    zip(EXPORTS, (graphml, node_link, dot, clingraph), strict=True)
+)

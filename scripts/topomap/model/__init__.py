@@ -1,0 +1,1 @@
+"""What is talked about: experiences, maps, queries, and their words."""

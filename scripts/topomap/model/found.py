@@ -1,0 +1,28 @@
+"""What is found: a hypothesis, and whether it is proved to be what it is said to be."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from topomap.model.experience import DState, Misread
+from topomap.model.topology import Gateway
+
+Cube = tuple[DState, ...]  # the first dstates of a hypothesis
+UNPROVED = "not proved to be best"  # the kind of a map of which it is open whether it is
+
+
+@dataclass(frozen=True)
+class Found:
+    """A hypothesis: the dstate after each step, of what kind it is, and if the query
+    minimises, its costs, most important first, and whether they are proved least; and what
+    was misread."""
+
+    at: tuple[DState, ...]
+    kind: str
+    cost: tuple[int, ...] = ()
+    proved: bool = True
+    misread: tuple[Misread, ...] = ()
+
+
+def steps_json(at: Sequence[Gateway]) -> list[list[int]]:
+    """The dstate after each step, ``[[T,P,S], ...]``."""
+    return [[step, place, slot] for step, (place, slot) in enumerate(at)]

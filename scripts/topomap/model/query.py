@@ -1,0 +1,31 @@
+"""Queries: which hypotheses of an experience are asked for."""
+
+from dataclasses import dataclass, replace
+
+from topomap.model.vocabulary import OPTIMIZING
+
+
+@dataclass(frozen=True)
+class Query:
+    """Which hypotheses are asked for: the parts of the theory that are to hold, the
+    most places, and the last step that counts; the encoding that is to give them; and how many
+    views may be wrong, which goes with the plain encoding."""
+
+    parts: frozenset[str] = frozenset()
+    places: int | None = None
+    horizon: int | None = None
+    encoding: str = "fast"
+    noise: int | None = None
+
+    @property
+    def optimizes(self) -> bool:
+        return bool(self.parts & OPTIMIZING) or self.noise is not None
+
+    @property
+    def kind(self) -> str:
+        """What the answers are."""
+        return "best" if self.parts & OPTIMIZING else "consistent"
+
+    def having(self, *parts: str) -> "Query":
+        """The query with more parts."""
+        return replace(self, parts=self.parts | set(parts))

@@ -1,0 +1,132 @@
+"""An exploration in words."""
+
+import re
+from collections.abc import Collection, Mapping, Sequence
+from typing import TYPE_CHECKING
+
+from topomap.model.topology import Gateway, gid
+from topomap.runtime.errors import printable
+
+if TYPE_CHECKING:  # who only reads a call need not load the solver
+    from topomap.model.experience import Experience, Misread
+
+MOST = 24  # gateways of a view that are told one by one
+LONGEST = 16  # letters of the landmarks of a place, in a picture
+RULES = {
+    "view": "another view is seen there",
+    "landmark": "other landmarks are seen there",
+    "marker": "the marker is seen elsewhere, or lies there and is not seen",
+    "twice": "a place would be on a path twice",
+    "circular": "a path would be circular",
+    "planarity": "the gateways are not on one face",
+    "perpendicular": "it would not be perpendicular",
+    "bound": "there would be too many places",
+}
+
+
+def number(count: int, noun: str, nouns: str | None = None) -> str:
+    """So many of them."""
+    return f"{count:,} {noun if count == 1 else nouns or noun + 's'}"
+
+
+def direction(slot: int, slots: int) -> str:
+    """A slot, counted clockwise from the gateway arrived by."""
+    if slot == 0:
+        return "back"
+    if slot == slots // 2:
+        return "straight on"
+    side = "left" if slot < slots // 2 else "right"
+    return side if slots == 4 else f"{side} ({_clockwise(slot)})"
+
+
+def _clockwise(slot: int) -> str:
+    return f"{number(slot, 'slot')} clockwise"
+
+
+def turn(experience: "Experience", step: int) -> str:
+    """What is done at a step."""
+    if step == 0:
+        return "start"
+    slot = experience.turns[step - 1]
+    if step == 1:
+        return f"leave {'by the gateway stood at' if slot == 0 else _clockwise(slot)}"
+    return direction(slot, experience.slots)
+
+
+def view(experience: "Experience", step: int) -> str:
+    """The gateways that are seen after a step."""
+    seen = sorted(experience.views[step])
+    told = seen[:MOST]
+    if step == 0:
+        words = ["where it stands" if slot == 0 else _clockwise(slot) for slot in told]
+    else:
+        words = [direction(slot, experience.slots) for slot in told]
+    if len(seen) > MOST:
+        words.append(f"{len(seen) - MOST:,} more")
+    return f"{number(len(seen), 'way')}: {', '.join(words)}"
+
+
+def marker(experience: "Experience", step: int) -> str:
+    """What is seen of the marker after a step, and what is done with it."""
+    told = [
+        word
+        for word, steps in (
+            ("seen", experience.markers - experience.picks - experience.drops),
+            ("taken up", experience.picks),
+            ("put down", experience.drops),
+        )
+        if step in steps
+    ]
+    return ", ".join(told)
+
+
+def markers(experience: "Experience", at: Sequence[Gateway]) -> str:
+    """The same of a map's steps, with the places."""
+    told = ((step, marker(experience, step), place) for step, (place, _) in enumerate(at))
+    return "; ".join(
+        f"{what} at place {place} after step {step}" for step, what, place in told if what
+    )
+
+
+def disbelieved(experience: "Experience", misread: "Sequence[Misread]") -> str:
+    """What was misread, step by step; the experience is the corrected one."""
+    told: dict[int, list[str]] = {}
+    for step, what in misread:
+        gateway = isinstance(what, int)
+        there = what in (experience.views if gateway else experience.landmarks)[step]
+        kind = "missed" if there else "imagined"
+        told.setdefault(step, []).append(f"{'gateway' if gateway else 'landmark'} {what} {kind}")
+    steps = [f"step {step} ({', '.join(what)})" for step, what in told.items()]
+    return f"disbelieves {', '.join(steps)}; " if steps else ""
+
+
+def refused(arrivals: Mapping[str, Sequence[Gateway]], new: int, most: int = 6) -> str:
+    """The arrivals that are refused at a step, by rule, the first of them if they are many;
+    ``new`` is the place that the step makes."""
+    parts = []
+    for rule, gateways in arrivals.items():
+        names = ["a new place" if place == new else gid((place, slot)) for place, slot in gateways]
+        more = f" and {len(names) - most:,} more" if len(names) > most else ""
+        parts.append(f"{', '.join(names[:most])}{more}: {RULES[rule]}")
+    return "; ".join(parts)
+
+
+def listed(numbers: Collection[int], most: int = 8) -> str:
+    """Numbers in a row, the first of them if they are many."""
+    first = ", ".join(map(str, sorted(numbers)[:most]))
+    return first + (f" and {len(numbers) - most:,} more" if len(numbers) > most else "")
+
+
+def short(text: str, most: int) -> str:
+    """The beginning of a text that is too long."""
+    return text if len(text) <= most else text[: most - 1] + "…"
+
+
+def signs(landmarks: Collection[str]) -> str:
+    """The landmarks of a place in a picture: strings without their quotes, in one line."""
+    return short(", ".join(printable(_unquoted(sign)) for sign in sorted(landmarks)), LONGEST)
+
+
+def _unquoted(sign: str) -> str:
+    string = re.fullmatch(r'"(.*)"', sign, re.DOTALL)
+    return re.sub(r'\\(["\\])', r"\1", string[1]) if string else sign

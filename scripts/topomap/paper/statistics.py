@@ -1,0 +1,206 @@
+"""The figures of the search tree (the paper, Figure 4), by clingo and by search."""
+
+from collections.abc import Iterator
+from dataclasses import asdict, dataclass, field, replace
+from functools import partial
+from itertools import islice
+from typing import Any
+
+from topomap.model.experience import Experience
+from topomap.model.found import Cube
+from topomap.model.query import Query
+from topomap.model.vocabulary import PRUNING
+from topomap.runtime.journal import Journal
+from topomap.runtime.watch import Watch
+from topomap.search import traversal
+from topomap.search.hypothesis import Hypothesis
+from topomap.solver.share import ALONE, Crew
+from topomap.solver.solving import count, demand_cover
+
+LARGE = 10_000  # a tree with a level of more hypotheses is counted cube by cube
+KEYS = ("nodes", "maps_built", "final", "closed", "closed_text", "optimal", "perpendicular")
+FINAL = {
+    "closed": ("travelled",),
+    "closed_text": ("closed",),
+    "optimal": ("closed", "boundary", "minimal"),
+    "perpendicular": ("closed", "perpendicular"),
+}
+
+
+def tree(
+    experience: Experience,
+    query: Query,
+    watch: Watch,
+    journal: Journal,
+    result: dict[str, Any],
+    crew: Crew = ALONE,
+) -> None:
+    """Fill in ``result``, by clingo alone (semantics: "What Figure 4 counts"):
+
+    ``per_step``: hypotheses after each step, from 0; ``nodes``: their sum;
+    ``maps_built``: those whose last step added a link, and the root; ``final``: those after the
+    last step; of these ``closed``: every path holds two places, as the table counts it;
+    ``closed_text``: no pending gateway; ``optimal``; ``perpendicular``: closed and
+    qualitatively perpendicular. What the time limit cuts off stays None.
+
+    A node of the tree at depth t is an answer set with ``-c horizon=t``. Large levels are
+    counted cube by cube, each a unit of the journal.
+    """
+
+    def counted(units: list[Unit]) -> Iterator[tuple[int, int]]:
+        known = journal.known(len(units))
+        yield from known
+        found = watch.found
+        for pair in crew.each(partial(_counted, experience), units[len(known) :], watch):
+            journal.keep(pair)
+            watch.found = found = found + pair[0]
+            yield pair
+
+    maps_built = 0
+
+    def level(pairs: Iterator[tuple[int, int]]) -> int:
+        """Take in the pairs of a step; how many hypotheses there are."""
+        nonlocal maps_built
+        numbers = list(pairs)
+        maps_built += sum(grown for _, grown in numbers)
+        result["per_step"].append(sum(total for total, _ in numbers))
+        return int(result["per_step"][-1])
+
+    result.update(dict.fromkeys(KEYS), per_step=[])
+    monotone = query.parts <= set(PRUNING)
+    last = experience.steps if query.horizon is None else min(query.horizon, experience.steps)
+    parts: list[Cube] = [()]
+    cubes: list[Cube] = []  # to come in its place, at a step
+    depth = step = 0
+    while step <= last:
+        watch.title(f"step {step} of {last}")
+        if not cubes and (not monotone or max(result["per_step"], default=0) > LARGE):
+            cubes, depth = traversal.cubes(experience, query)
+        if cubes and step >= depth:
+            demand_cover(experience, query, watch, cubes, depth)
+            parts = cubes
+            break
+        if not level(counted([(replace(query, horizon=step), cube, True) for cube in parts])):
+            parts = [] if monotone else parts
+        step += 1
+    # All that is left is shared out at once: nobody waits for the end of a step.
+    steps = range(step, last + 1)
+    units = [(replace(query, horizon=step), cube, True) for step in steps for cube in parts]
+    asked = {key: query.having(*properties) for key, properties in FINAL.items()}
+    cubes_of = {key: [()] if asked[key].optimizes else parts for key in asked}
+    units += [(asked[key], cube, False) for key in asked for cube in cubes_of[key]]
+    pairs = counted(units)
+    for step in steps:
+        watch.title(f"step {step} of {last}")
+        level(islice(pairs, len(parts)))
+    result.update(
+        nodes=sum(result["per_step"]), maps_built=maps_built, final=result["per_step"][-1]
+    )
+    for key in asked:
+        watch.title(f"{key} maps")
+        result[key] = sum(total for total, _ in islice(pairs, len(cubes_of[key])))
+
+
+def final_maps(experience: Experience, query: Query, watch: Watch, crew: Crew) -> int:
+    """The hypotheses after the last step, by clingo."""
+    parts, depth = traversal.cubes(experience, query)
+    demand_cover(experience, query, watch, parts, depth)
+    units = [(query, cube, False) for cube in parts]
+    return sum(total for total, _ in crew.each(partial(_counted, experience), units, watch))
+
+
+Unit = tuple[Query, Cube, bool]
+
+
+def _counted(experience: Experience, unit: Unit, watch: Watch | None) -> tuple[int, int]:
+    query, cube, grown = unit
+    return count(experience, query, cube, watch, grown)
+
+
+@dataclass
+class Tally:
+    """The same figures, of nodes that a search passes: add each, and merge the tallies of
+    parts of the tree. ``cost`` is that of the optimal maps so far."""
+
+    steps: int
+    per_step: list[int] = field(default_factory=list)
+    maps_built: int = 0
+    closed: int = 0
+    closed_text: int = 0
+    perpendicular: int = 0
+    cost: tuple[int, ...] | None = None
+    optimal: int = 0
+
+    def __post_init__(self) -> None:
+        self.per_step = self.per_step or [0] * (self.steps + 1)
+
+    def add(self, node: Hypothesis) -> None:
+        """Count a node."""
+        self.per_step[node.steps] += 1
+        self.maps_built += node.grown
+        if node.steps < self.steps:
+            return
+        self.closed += node.travelled()
+        if node.closed():
+            self.closed_text += 1
+            self.perpendicular += node.square()
+            if self.cost is None or node.cost <= self.cost:
+                self._best(node.cost, node.map.boundaries_consistent())
+
+    def merge(self, other: "Tally") -> None:
+        """Count what another tally has counted."""
+        self.per_step = [a + b for a, b in zip(self.per_step, other.per_step, strict=True)]
+        self.maps_built += other.maps_built
+        self.closed += other.closed
+        self.closed_text += other.closed_text
+        self.perpendicular += other.perpendicular
+        if other.cost is not None:
+            self._best(tuple(other.cost), other.optimal)
+
+    def _best(self, cost: tuple[int, ...], number: int) -> None:
+        """Take in so many optimal maps."""
+        if number and (self.cost is None or cost <= self.cost):
+            self.optimal = number + (self.optimal if cost == self.cost else 0)
+            self.cost = cost
+
+    def figures(self) -> dict[str, Any]:
+        """What ``tree`` gives."""
+        counted = {key: getattr(self, key) for key in FINAL}
+        return {
+            "nodes": sum(self.per_step),
+            "maps_built": self.maps_built,
+            "final": self.per_step[-1],
+            **counted,
+            "per_step": self.per_step,
+        }
+
+
+def searched(
+    experience: Experience, query: Query, watch: Watch, journal: Journal, crew: Crew = ALONE
+) -> Tally:
+    """The figures of the tree by depth-first search: of its top, and of the parts below it,
+    each a unit of the journal."""
+    parts, _ = traversal.cubes(experience, query, 256)
+    node = traversal.root(experience, query)
+    tally = Tally(node.experience.steps)
+    for _ in traversal.top(node, set(parts)):
+        tally.add(node)
+    known = [Tally(**value) for value in journal.known(len(parts))]
+    for done in known:
+        tally.merge(done)
+    for done in crew.each(partial(_part, experience, query), parts[len(known) :], watch):
+        journal.keep(asdict(done))
+        tally.merge(done)
+        watch.found = tally.per_step[-1]
+        watch.tick()
+    return tally
+
+
+def _part(experience: Experience, query: Query, cube: Cube, watch: Watch | None) -> Tally:
+    """The figures of the tree from a node down."""
+    node = traversal.root(experience, query)
+    node.goto(cube)
+    tally = Tally(node.experience.steps)
+    for _ in traversal.depth_first(node, watch):
+        tally.add(node)
+    return tally

@@ -1,0 +1,226 @@
+"""``topomap ask``: whether a statement holds in all maps, in some or in none.
+
+It holds in some map if there is an answer with it assumed, and in all if there is none with its
+negation assumed. So no maps are enumerated; and what a map shows of other statements is not
+asked again. Of the best maps, first what the best ones cost is found, and is then a bound.
+"""
+
+import argparse
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import partial
+from typing import Any
+
+import clingo
+
+from topomap.documents.answers import map_json, map_line
+from topomap.model.experience import Experience, read
+from topomap.model.found import Found
+from topomap.model.query import Query
+from topomap.model.vocabulary import PARTS
+from topomap.questions import statements
+from topomap.questions.statements import Statement
+from topomap.runtime import formats
+from topomap.runtime.files import output
+from topomap.runtime.limits import LARGEST
+from topomap.runtime.watch import Run, Watch
+from topomap.solver.solving import Program, calls
+
+BUDGETS = ("1000", "30000", "umax")  # conflicts: what is hard to settle holds up nothing else
+Literal = tuple[str, bool]  # a term of a statement, and whether it holds
+
+
+@dataclass
+class Answer:
+    """What is known of a statement: a map in which it holds, one in which it does not, and
+    whether it is proved that there is none."""
+
+    statement: Statement
+    witness: Found | None = None
+    counter: Found | None = None
+    never: bool = False
+    always: bool = False
+
+    @property
+    def holds(self) -> str | None:
+        """In all maps, some or none, if that is settled."""
+        if self.always or self.never:
+            return "all" if self.always else "none"
+        return "some" if self.witness and self.counter else None
+
+    def words(self) -> str:
+        """The same in words; if it is not settled, what is known."""
+        if self.holds:
+            note = self.statement.note
+            return f"in {self.holds}" + (f": {note}" if note else "")
+        if self.witness or self.counter:
+            return f"not settled: in some or {'all' if self.witness else 'none'}"
+        return "not settled"
+
+
+class Answers:
+    """What is known of statements, and of which maps: ``some`` tells whether there are any."""
+
+    def __init__(self, asked: Sequence[Statement]):
+        self.each = [Answer(statement) for statement in asked]
+        self.terms = dict.fromkeys(statement.term for statement in asked)
+        self.some: bool | None = None
+        self.kind: str | None = None
+        self.cost: tuple[int, ...] = ()
+
+    def settle(self, experience: Experience, query: Query, optimal: bool, watch: Watch) -> None:
+        """Ask for all of them. Raises Stopped at the time limit, or out of memory."""
+        if not optimal:
+            self._settle(experience, query, query.kind, watch)
+            return
+        best = query.having("boundary", "minimal")
+        self._settle(experience, best.having("closed"), "optimal", watch)
+        if not self.some:
+            self.some, self.kind = None, None  # that no map is closed does not settle it
+            self._settle(experience, best, "best so far", watch)
+
+    def _settle(self, experience: Experience, query: Query, kind: str, watch: Watch) -> None:
+        facts = "".join(f"ask({term}).\n" for term in self.terms)
+        work = partial(_work, list(self.terms), query.optimizes)
+        for at, cost, literals in calls(experience, query.having("query"), facts, watch, work):
+            if at:
+                watch.found += 1
+                self.some, self.kind, self.cost = True, kind, cost
+                self._see(Found(at, kind, cost), set(literals))
+            elif literals:
+                self._rule_out(*literals)
+            else:
+                self.some, self.kind = False, kind
+
+    def _see(self, found: Found, literals: set[Literal]) -> None:
+        for answer in self.each:
+            if (answer.statement.term, answer.statement.positive) in literals:
+                answer.witness = answer.witness or found
+            else:
+                answer.counter = answer.counter or found
+
+    def _rule_out(self, literal: Literal) -> None:
+        for answer in self.each:
+            if answer.statement.term == literal[0]:
+                if answer.statement.positive == literal[1]:
+                    answer.never = True
+                else:
+                    answer.always = True
+
+
+def _work(
+    terms: Sequence[str], optimizes: bool, program: Program, put: Callable[[Any], bool]
+) -> None:
+    """Puts maps, each with what it costs and what holds in it; literals that are so in no map,
+    without one; or that there is no map."""
+    seen: set[Literal] = set()
+    cost: tuple[int, ...] = ()
+    going = True
+
+    def take(model: clingo.Model) -> bool:
+        nonlocal cost, going
+        if optimizes and not cost and not model.optimality_proven:
+            return True
+        cost = tuple(model.cost)
+        shown = model.symbols(shown=True)
+        holding = {str(atom.arguments[0]) for atom in shown if atom.name == "holds"}
+        literals = [(term, term in holding) for term in terms]
+        steps = sorted([a.number for a in atom.arguments] for atom in shown if atom.name == "at")
+        seen.update(literals)
+        going = put((tuple((place, slot) for _, place, slot in steps), cost, literals))
+        return False
+
+    if program.solve((), on_model=take).unsatisfiable:
+        put(((), (), []))
+        return
+    if optimizes:
+        bound = ",".join(map(str, cost))
+        program.control.configuration.solve.opt_mode = f"enum,{bound}"  # type: ignore[union-attr]
+    left = [(term, value) for term in terms for value in (True, False)]
+    for conflicts in BUDGETS:
+        program.control.configuration.solve.solve_limit = conflicts  # type: ignore[union-attr]
+        asked, left = left, []
+        for literal in asked:
+            if not going or literal in seen:
+                continue
+            assumed = clingo.Function("holds", [clingo.parse_term(literal[0])]), literal[1]
+            result = program.solve((), [assumed], on_model=take)
+            if result.interrupted:
+                return
+            if result.unsatisfiable:
+                going = put(((), (), [literal]))
+            elif result.unknown:
+                left.append(literal)
+
+
+def ask(args: argparse.Namespace) -> int:
+    """Settle statements, and write what was found."""
+    experience = read(args.instance).cut(LARGEST if args.horizon is None else args.horizon)
+    asked = [statements.parse(text, experience, args.command) for text in args.statement]
+    parts = frozenset(part for part in PARTS if getattr(args, part))
+    query = Query(parts, args.bound, args.horizon, args.encoding)
+    answers = Answers(asked)
+    with output(args.output) as out:
+        with Run(args.timeout) as run:
+            answers.settle(experience, query, args.optimal, run.watch)
+        if args.json:
+            out.write(_json(args, experience, query, answers, run.fault))
+        else:
+            out.writelines(f"{line}\n" for line in _lines(experience, answers, run.fault))
+    return run.status(bool(answers.some))
+
+
+def _lines(experience: Experience, answers: Answers, fault: str | None) -> list[str]:
+    """The answers to read."""
+    if answers.some is False:
+        return ["no map is consistent with it"]
+    lines = []
+    for answer in answers.each:
+        lines.append(f"{answer.statement.text}: {answer.words()}")
+        for does, found in ("it holds", answer.witness), ("it does not", answer.counter):
+            if found:
+                lines.append(f"  a map in which {does}: {map_line(experience, found)}")
+    if answers.some:
+        cost = f", cost {' '.join(map(str, answers.cost))}" if answers.cost else ""
+        lines.append(f"of the {answers.kind} maps{cost}")
+    if fault:
+        lines.append(f"partial: {fault}")
+    return lines
+
+
+def _json(
+    args: argparse.Namespace,
+    experience: Experience,
+    query: Query,
+    answers: Answers,
+    fault: str | None,
+) -> str:
+    """The answers as JSON, whole maps as ``solve`` writes them."""
+
+    def whole(found: Found | None) -> Any:
+        return found and map_json(experience.map_of(found.at), found.at)
+
+    return formats.line(
+        {
+            "instance": args.instance,
+            "slots": experience.slots,
+            "parts": sorted(query.parts),
+            "bound": query.places,
+            "horizon": query.horizon,
+            "optimal": args.optimal,
+            "kind": answers.kind,
+            "cost": answers.cost if answers.some else None,
+            "has_maps": answers.some,
+            "statements": [
+                {
+                    "statement": answer.statement.text,
+                    "holds": answer.holds,
+                    "note": answer.statement.note,
+                    "witness": whole(answer.witness),
+                    "counter": whole(answer.counter),
+                }
+                for answer in (answers.each if answers.some is not False else ())
+            ],
+        },
+        fault,
+    )

@@ -1,0 +1,338 @@
+"""Reasons in words: what a map would be like that breaks one rule, spelled out from that map.
+
+The map need not be sound in other ways; a gateway of it may have two links. So what is told goes
+by the visits, as the rules in ``encodings/theory/`` do, and not by the links.
+"""
+
+from collections import deque
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+from topomap.model.experience import DState, Experience
+from topomap.model.topology import gid
+from topomap.model.words import number
+from topomap.runtime.errors import printable
+
+RULES = {
+    "view": "views",
+    "marker": "marker",
+    "unification": "gateway unification",
+    "schema": "schema",
+    "twice": "path axiom",
+    "crossed": "path axiom",
+    "circular": "path axiom",
+    "bound": "bound",
+    "planar": "planarity",
+    "euler": "planarity",
+    "boundary": "boundary",
+    "sides": "boundary",
+    "perpendicular": "perpendicularity",
+    "triangle": "perpendicularity",
+    "travelled": "travelled",
+    "closed": "closed",
+}
+KINDS = tuple(RULES)  # those named first are what an explanation prefers to be made of
+FIRST = KINDS.index("bound")  # so many are of every map, and not of demands
+Node = tuple[int, int]  # a run, and a visit on it
+
+
+@dataclass(frozen=True)
+class Told:
+    """A reason in words, the steps that it names, and if it is about a walk (along a path, or
+    round a cycle), its visits and their places."""
+
+    words: str
+    steps: tuple[int, ...]
+    walk: tuple[int, ...] = ()
+    places: tuple[int, ...] = ()
+
+
+@dataclass(frozen=True)
+class Broken:
+    """A map that breaks a rule: dstates by step, and how many faces there are too few: ``euler``
+    is |V| - |E| + faces."""
+
+    experience: Experience
+    at: tuple[DState, ...]
+    euler: int | None = None
+
+    @property
+    def slots(self) -> int:
+        return self.experience.slots
+
+    def place(self, step: int) -> int:
+        return self.at[step][0]
+
+    def left_by(self, step: int) -> DState:
+        """The gateway by which a step leaves."""
+        place, slot = self.at[step - 1]
+        return place, (slot + self.experience.turns[step - 1]) % self.slots
+
+    @cached_property
+    def runs(self) -> dict[int, dict[int, int]]:
+        """Of each run its visits, each with the slot of the place for which the run heads."""
+        runs: dict[int, dict[int, int]] = {}
+        for step, turn in enumerate(self.experience.turns, 1):
+            if step == 1 or turn != self.slots // 2:
+                run = runs[step] = {step - 1: self.left_by(step)[1]}
+            run[step] = (self.at[step][1] + self.slots // 2) % self.slots
+        return runs
+
+    def touching(self, node: Node) -> Iterator[Node]:
+        """The same place on the same path, on any run."""
+        run, step = node
+        for other, visits in self.runs.items():
+            for visit, heading in visits.items():
+                turn = heading - self.runs[run][step]
+                if self.place(visit) == self.place(step) and turn % (self.slots // 2) == 0:
+                    yield other, visit
+
+    def crossing(self, node: Node, other: int) -> Iterator[Node]:
+        """The same place on another run, which heads another way there."""
+        run, step = node
+        for visit, heading in self.runs[other].items():
+            turn = heading - self.runs[run][step]
+            if self.place(visit) == self.place(step) and turn % (self.slots // 2):
+                yield other, visit
+
+    def along(self, start: Node, goals: set[Node], straight: bool) -> list[int] | None:
+        """The visits of a shortest walk along a path; if it is not to be straight on, also from
+        one link of a gateway to another one."""
+        before: dict[tuple[Node, int], tuple[Node, int, bool]] = {}
+        waiting = deque((start, sign, (start, sign, False)) for sign in (1, -1))
+        while waiting:
+            node, sign, last = waiting.popleft()
+            if (node, sign) in before:
+                continue
+            before[node, sign] = last
+            if node in goals:
+                walk = []
+                while before[node, sign][:2] != (node, sign):
+                    walk += [node[1]] * before[node, sign][2]
+                    node, sign, _ = before[node, sign]
+                walk.append(start[1])
+                return walk[::-1]
+            run, step = node
+            for other in self.touching(node):
+                with_it = self.runs[other[0]][other[1]] == self.runs[run][step]
+                ways = {sign if with_it else -sign} if straight else {1, -1}
+                waiting.extendleft((other, way, (node, sign, False)) for way in sorted(ways))
+            if step + sign in self.runs[run]:
+                waiting.append(((run, step + sign), sign, (node, sign, True)))
+        return None
+
+    def crossed(self, a: int, b: int) -> list[int] | None:
+        """A shortest walk along the path of two runs, from a place to where it crosses it."""
+        for straight in (True, False):
+            walks = [
+                walk
+                for visit in self.runs[a]
+                if (goals := set(self.crossing((a, visit), b)))
+                and (walk := self.along((a, visit), goals, straight))
+            ]
+            if walks:
+                return min(walks, key=len)
+        return None
+
+    def round(self, a: int) -> list[int] | None:
+        """A shortest walk round the circular path of a run."""
+        walks = []
+        for first in self.runs[a]:
+            walk, node, sign = [first], (a, first), 1
+            here = self.place(first), self.runs[a][first]
+            while len(walk) <= 2 * len(self.at) and (on := self._next(node, sign)):
+                node, sign = on
+                walk.append(node[1])
+                heading = self.runs[node[0]][node[1]] + (0 if sign == 1 else self.slots // 2)
+                if (self.place(node[1]), heading % self.slots) == here:
+                    walks.append(walk)
+                    break
+        return min(walks, key=len, default=None)
+
+    def _next(self, node: Node, sign: int) -> tuple[Node, int] | None:
+        """The next visit straight on, and whether it is with its run or against it."""
+        for run, step in [node, *self.touching(node)]:
+            with_it = self.runs[run][step] == self.runs[node[0]][node[1]]
+            way = sign if with_it else -sign
+            if step + way in self.runs[run]:
+                return (run, step + way), way
+        return None
+
+    def cycle(self, chord: int) -> tuple[list[int], list[int]]:
+        """What a chord closes in the tree of the links by which places were first reached: the
+        steps of its links, the chord's last, and its places, from the one where the chord ends."""
+        ends = []
+        for place in (self.place(chord), self.place(chord - 1)):
+            line = [place]
+            while line[-1]:
+                line.append(self.place(line[-1] - 1))
+            ends.append(line)
+        there, here = ends
+        while len(there) > 1 and len(here) > 1 and there[-2] == here[-2]:
+            there.pop()
+            here.pop()
+        return [*there[:-1], *here[-2::-1], chord], [*there, *here[-2::-1], there[0]]
+
+    def tell(self, kind: str, arguments: Sequence[int], common: Sequence[Sequence[int]]) -> Told:
+        """A reason that this map breaks, in words; ``common`` has the places where paths meet."""
+        if kind == "view":
+            return told_views(self.experience, arguments, self.at)
+        if kind in ("schema", "unification"):
+            return self._links(kind, *arguments)
+        if kind in ("twice", "crossed", "circular"):
+            return self._path(kind, arguments)
+        if kind == "planar":
+            steps, places = self.cycle(arguments[0])
+            words = (
+                f"the link of step {arguments[1]} would join a gateway inside the cycle of "
+                f"{_named('step', steps)}, round by {_named('place', places)}, to one outside"
+            )
+            return Told(words, (arguments[1], *steps), tuple(steps), tuple(places))
+        if kind == "euler":
+            total = "another number" if self.euler is None else self.euler
+            return Told(f"|V| - |E| + faces would be {total}, not 2", ())
+        if kind == "bound":
+            places = sorted({place for place, _ in self.at})
+            words = f"it would take {number(len(places), 'place')}, first visited after "
+            return Told(words + _named("step", places), tuple(places))
+        if kind in ("closed", "travelled"):
+            return told_gateway(kind, *arguments)
+        if kind == "marker":
+            return told_marker(self.experience, arguments[0], self.at)
+        if kind == "sides":
+            run, place = arguments
+            words = f"place {place} would be both right and left of the path of step {run}"
+            return Told(words, (run, place))
+        meets = [_named("place", sorted({p for a, b, p in common if {a, b} == {c, d}}))
+                 for c, d in _pairs(arguments)]  # fmt: skip
+        paths = _named("step", arguments)
+        if kind == "triangle":
+            words = f"the paths of {paths} would meet pairwise, at {'; '.join(meets)}"
+        else:
+            words = f"the paths of {paths} would meet more than once, at {meets[0]}"
+        return Told(words, tuple(arguments))
+
+    def _links(self, kind: str, first: int, second: int) -> Told:
+        out, other = self.left_by(first), self.left_by(second)
+        end, arrival = self.at[first], self.at[second]
+        if kind == "schema" and out == other:
+            words = (
+                f"steps {first} and {second} would leave by one gateway, {gid(out)}, and arrive "
+                f"at two, {gid(end)} and {gid(arrival)}"
+            )
+        elif kind == "schema":
+            words = (
+                f"steps {first} and {second} would arrive at one gateway, {gid(end)}, by two, "
+                f"{gid(out)} and {gid(other)}"
+            )
+        elif other == end:
+            words = (
+                f"step {second} would leave by the gateway where step {first} arrived, {gid(end)}, "
+                f"and arrive at {gid(arrival)}, not at {gid(out)}, by which step {first} left"
+            )
+        else:
+            words = (
+                f"step {second} would arrive at the gateway by which step {first} left, "
+                f"{gid(out)}, from {gid(other)}, not from {gid(end)}, where step {first} arrived"
+            )
+        return Told(words, (first, second))
+
+    def _path(self, kind: str, arguments: Sequence[int]) -> Told:
+        if kind == "twice":
+            walk: list[int] | None = list(range(arguments[0], arguments[1] + 1))
+        else:
+            walk = self.crossed(*arguments) if kind == "crossed" else self.round(arguments[0])
+        if not walk:
+            return told_plainly(kind, arguments)
+        places = [self.place(step) for step in walk]
+        if kind == "circular":
+            end = "be circular"
+        elif kind == "twice":
+            end = f"hold place {places[0]} twice, after steps {walk[0]} and {walk[-1]}"
+        else:
+            end = f"cross itself at place {places[0]}"
+        words = f"the path through {_named('place', places)} ({_named('step', walk)}) would {end}"
+        return Told(words, tuple(walk), tuple(walk), tuple(places))
+
+
+def told_plainly(kind: str, arguments: Sequence[int]) -> Told:
+    """A reason in words, without a map that breaks it."""
+    steps = _named("step", arguments)
+    words = {
+        "unification": f"{steps} go by one link, there and back",
+        "schema": f"{steps} go by one link",
+        "twice": f"{steps} end at different places, as they are on one path",
+        "crossed": f"the path of {steps} does not cross itself",
+        "circular": f"the path of {steps} is not circular",
+        "planar": f"the links of {steps} do not cross",
+        "euler": "|V| - |E| + faces is 2",
+        "bound": "there are not too many places",
+        "boundary": f"the paths of {steps} meet once at most",
+        "perpendicular": f"the paths of {steps} meet once at most",
+        "triangle": f"the paths of {steps} do not meet pairwise",
+    }
+    return Told(words.get(kind, kind), tuple(arguments))
+
+
+def told_gateway(kind: str, place: int, slot: int) -> Told:
+    """A gateway that has no link."""
+    if kind == "closed":
+        return Told(f"gateway {place}.{slot} would be pending", (place,))
+    words = f"the path through slot {slot} of place {place} would hold no other place"
+    return Told(words, (place,))
+
+
+def told_views(
+    experience: Experience, steps: Sequence[int], at: Sequence[DState] | None = None
+) -> Told:
+    """Two views that differ."""
+    slots, (step, visit) = experience.slots, steps
+    view, other = experience.views[step], experience.views[visit]
+    signs = experience.landmarks[step], experience.landmarks[visit]
+    turns = [turn for turn in range(slots) if {(slot + turn) % slots for slot in view} == other]
+    if signs[0] != signs[1]:
+        fault = "the landmarks are not the same"
+    elif not turns:
+        fault = "no turn of one gives the other"
+    elif at is None:
+        fault = f"one gives the other only if turned by {' or '.join(map(str, turns))}"
+    else:
+        turn = (at[step][1] - at[visit][1]) % slots
+        fault = (
+            f"the first one, turned by {turn} as it would be, does not give the other "
+            f"(it does turned by {' or '.join(map(str, turns))})"
+        )
+    texts = [
+        " ".join(map(str, sorted(experience.views[one])))
+        + (f", with {', '.join(map(printable, sorted(sign))) or 'no landmark'}" * any(signs))
+        for one, sign in zip((step, visit), signs, strict=True)
+    ]
+    words = (
+        f"after step {step} the agent sees the gateways {texts[0]}, after step {visit} {texts[1]}: "
+        f"{fault}"
+    )
+    return Told(words, (step, visit))
+
+
+def told_marker(experience: Experience, step: int, at: Sequence[DState] | None = None) -> Told:
+    """What is seen of the marker, and where it lies."""
+    told = experience.marker()[step]
+    assert told
+    down, seen = told
+    words = f"after step {step} the agent {'sees' if seen else 'does not see'} the marker, "
+    if at is None:
+        words += f"which it put down after step {down}"
+    else:
+        place, there = at[step][0], at[down][0]
+        words += f"which lies at place {there} (step {down}), and would be at place {place}"
+    return Told(words, (down, step))
+
+
+def _pairs(paths: Sequence[int]) -> list[tuple[int, int]]:
+    return [(a, b) for i, a in enumerate(paths) for b in paths[i + 1 :]]
+
+
+def _named(noun: str, numbers: Sequence[int]) -> str:
+    """Such as "steps 3 4 5"."""
+    return f"{noun}{'s' * (len(numbers) != 1)} {' '.join(map(str, numbers))}"

@@ -1,0 +1,209 @@
+"""A robot in a world that it does not know: it maps by this program alone.
+
+It thinks of the best maps of what it has seen (``solving.best``), walks what ``explore`` plans
+for them, and stops when the best map is closed and the only one, or when no walk can tell the
+best ones apart.
+"""
+
+import statistics
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import islice
+from typing import Any
+
+from topomap.model.experience import Experience
+from topomap.model.experience import explore as experienced
+from topomap.model.found import Found
+from topomap.model.query import Query
+from topomap.model.topology import Gateway, Place, TopologicalMap
+from topomap.questions import explore
+from topomap.questions.explore import Prediction
+from topomap.runtime import nx
+from topomap.runtime.errors import InputError
+from topomap.runtime.watch import Attempt, Watch
+from topomap.solver import solving
+from topomap.worlds import route
+
+MOST_MAPS = 100  # best maps of which a walk is planned, while none is closed
+WALKS = 101  # random walks, of which the median is told
+ENDED = ("settled", "bisimilar", "no map")  # the ways to end that are no limit
+PATIENCE = 1000  # times as many steps as there are ways, after which a random walk is given up
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """How an exploration ended: ``end`` is "settled" (one closed optimal map), "bisimilar"
+    (several closed ones that no walk tells apart), "steps" (enough of them) or why it was cut.
+
+    ``maps`` are the best maps of the end; ``truth`` says whether the hypothesis that is so is
+    among them, and its map the whole world; None where that is open: the robot could go no
+    further, or there may be more best maps than were kept. ``tour`` is the length of a tour over
+    every way, by one who knows the map; ``random`` the median number of steps in which random
+    walks take every way (None: most do not within PATIENCE steps a way).
+    """
+
+    world: TopologicalMap
+    start: Gateway
+    experience: Experience
+    maps: tuple[Found, ...]
+    end: str
+    truth: bool | None
+    tour: int
+    random: int | None
+
+    @property
+    def steps(self) -> int:
+        return self.experience.steps
+
+    def json(self) -> dict[str, Any]:
+        """What is told of it."""
+        return {
+            "places": len(self.world.stars),
+            "ways": len(self.world.links) // 2,
+            "signs": len(self.world.landmarks),
+            "end": self.end,
+            "steps": self.steps,
+            "best_maps": len(self.maps) if self.maps or self.end == "no map" else None,
+            "truth": self.truth,
+            "tour": self.tour,
+            "random": self.random,
+        }
+
+
+def reached(world: TopologicalMap, start: Place) -> TopologicalMap:
+    """The part of a world that can be walked to. Raises InputError if it breaks the path axiom:
+    its own map is then not among the maps that are consistent with what is seen there."""
+    graph = nx.Graph((a[0], b[0]) for a, b in world.edges())
+    there = nx.node_connected_component(graph, start)
+    part = TopologicalMap(
+        world.slots,
+        {place: star for place, star in world.stars.items() if place in there},
+        {gateway: end for gateway, end in world.links.items() if gateway[0] in there},
+        {place: signs for place, signs in world.landmarks.items() if place in there},
+    )
+    if fault := part.path_axiom_fault():
+        raise InputError(f"its own map breaks the path axiom: {fault}; no robot can find it")
+    return part
+
+
+def random_walk(world: TopologicalMap, start: Place, walks: int = WALKS) -> int | None:
+    """How many steps a random walk takes until it has gone every way: the median."""
+    ways = len(world.links) // 2
+    lengths: list[float] = []
+    for seed in range(walks):
+        taken: set[Gateway] = set()
+        place = start
+        for steps, slot in enumerate(islice(route.walk(world, start, seed), PATIENCE * ways), 1):
+            taken |= {(place, slot), world.links[place, slot]}
+            place = world.links[place, slot][0]
+            if len(taken) == 2 * ways:
+                lengths.append(steps)
+                break
+        else:
+            lengths.append(float("inf"))
+    median = statistics.median_low(lengths)
+    return None if median == float("inf") else int(median)
+
+
+class Robot:
+    """Where a robot is in the world, what it did, and what it saw."""
+
+    def __init__(self, world: TopologicalMap, start: Gateway):
+        self.world, self.start = world, start
+        self.dstate = start
+        self.route: list[int] = []
+        self.drops: list[int] = []
+
+    def step(self, turn: int) -> None:
+        """Turn so many slots clockwise, and travel."""
+        place, slot = self.dstate
+        self.route.append((slot + turn) % self.world.slots)
+        self.dstate = self.world.links[place, self.route[-1]]
+
+    def experience(self) -> Experience:
+        """What it did and saw."""
+        return experienced(self.world, self.start, self.route, self.drops)[0]
+
+    def sight(self) -> Prediction:
+        """What it sees where it is."""
+        world, place = self.world, self.dstate[0]
+        marker = len(self.route) in self.experience().markers
+        return Prediction(world.view(self.dstate), world.landmarks.get(place, frozenset()), marker)
+
+    def mapped(self, maps: Sequence[Found]) -> bool:
+        """Whether one of the maps is the whole world, and the robot there where it thinks."""
+        experience, truth = experienced(self.world, self.start, self.route, self.drops)
+        whole = len(experience.map_of(truth).links) == len(self.world.links)
+        return whole and any(one.at == truth for one in maps)
+
+
+def simulate(
+    world: TopologicalMap,
+    start: Gateway,
+    query: Query,
+    watch: Watch,
+    most: int,
+    marker: bool = False,
+) -> Outcome:
+    """A robot explores a world that it can walk through as a whole (see ``reached``), from a
+    gateway, for ``most`` steps at most. What the query has is taken for granted of its map."""
+    robot = Robot(world, start)
+    maps: list[Found] = []
+    end = ""
+    with Attempt() as attempt:
+        while not end:
+            watch.phase(f"step {len(robot.route)}")
+            maps = best(robot.experience(), query, watch)
+            end = _go_on(robot, maps, watch, most, marker)
+    if attempt.fault:
+        end = attempt.fault
+        maps = [one for one in maps if len(one.at) == len(robot.route) + 1]
+    tour = len(route.tour(world, start[0]))
+    walked = random_walk(world, start[0])
+    whole = end in ENDED and len(maps) < MOST_MAPS
+    truth = robot.mapped(maps) or (False if whole else None)
+    return Outcome(world, start, robot.experience(), tuple(maps), end, truth, tour, walked)
+
+
+def _go_on(robot: Robot, maps: Sequence[Found], watch: Watch, most: int, marker: bool) -> str:
+    """Walk what is planned for the best maps, until one of them is refuted or there is something
+    new; or say why not."""
+    if not maps:
+        return "no map"
+    if len(maps) == 1 and maps[0].kind == "optimal":
+        return "settled"
+    if len(robot.route) == most:
+        return "steps"
+    experience = robot.experience()
+    standings = [explore.standing(experience, one.at) for one in maps]
+    carried = marker and not robot.drops
+    slots = robot.world.slots
+    plan = explore.plan(slots, standings, watch, proofs=False)
+    if plan.kind == "bisimilar":
+        plan = explore.plan(slots, standings, watch, marker=carried)  # if it stays so, proved
+    if plan.kind in ("settled", "bisimilar"):
+        return plan.kind
+    if not plan.turns:
+        return "a walk was not found" if plan.fault in explore.LIMITS else str(plan.fault)
+    walks = [explore.predict(one, plan.turns, plan.drop) for one in standings]
+    for number, turn in enumerate(plan.turns):
+        if len(robot.route) == most or turn not in robot.world.view(robot.dstate):
+            break  # (in the second case another map is true, and is told from these)
+        if number == plan.drop:
+            robot.drops.append(len(robot.route))
+        robot.step(turn)
+        seen = robot.sight()
+        if any(number >= len(walk) or walk[number] != seen for walk in walks):
+            break
+    return ""
+
+
+def best(experience: Experience, query: Query, watch: Watch) -> list[Found]:
+    """The optimal maps, or else the best so far, in order; MOST_MAPS of them, if they are more."""
+    found: list[Found] = []
+    for one in filter(None, solving.best(experience, query, watch)):
+        if one.proved:
+            found.append(one)
+            if len(found) == MOST_MAPS:
+                break
+    return sorted(found, key=lambda one: one.at)

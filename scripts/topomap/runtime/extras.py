@@ -1,0 +1,21 @@
+"""Extras: what some commands need beyond the base of the installation."""
+
+from importlib.util import find_spec
+
+from topomap.runtime.errors import InputError
+
+MODULES = {
+    "draw": ("jinja2", "matplotlib", "numpy", "scipy"),
+    "dask": ("distributed",),
+}
+
+
+def need(extra: str, what: str) -> None:
+    """Raise InputError, one line that begins with ``what``, if an extra is not installed."""
+    for module in MODULES[extra]:
+        if find_spec(module) is None:
+            raise InputError(
+                f"{what}: {module} is not installed; it comes with the extra {extra}: "
+                f"pip install '.[{extra}]' in the folder of topomap, "
+                f"or 'FILE.whl[{extra}]' with the file of its wheel"
+            )

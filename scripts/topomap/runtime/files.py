@@ -1,0 +1,117 @@
+"""Files: read whole, within a limit; written so that the old one or the whole new one is
+there, never a part."""
+
+import contextlib
+import fcntl
+import os
+import sys
+import tempfile
+from collections.abc import Iterator
+from errno import EISDIR, ELOOP
+from pathlib import Path
+from typing import IO, Any
+
+from topomap.runtime.errors import InputError, of_file
+
+MOST_BYTES = 2**25
+_CHUNK = 2**20
+_TEMPORARY = ".topomap-"
+TEXT = {"encoding": "utf-8", "errors": "backslashreplace"}
+
+
+def data(path: str | Path) -> bytes:
+    """The bytes of a file. Raises InputError where it cannot be read."""
+    return bytes(_content(path, MOST_BYTES))
+
+
+def text(path: str | Path, most: int = MOST_BYTES) -> str:
+    """The text of a file of ``most`` bytes at most. Raises InputError where there is none."""
+    try:
+        return _content(path, most, b"\0").decode("utf-8-sig")
+    except UnicodeDecodeError:
+        raise InputError(f"{path}: not a text file") from None
+
+
+def _content(path: str | Path, most: int, forbidden: bytes | None = None) -> bytearray:
+    """What is in a file, read until it is too much or no text."""
+    content = bytearray()
+    try:
+        with Path("/dev/stdin" if str(path) == "-" else path).open("rb") as file:
+            while chunk := file.read(_CHUNK):
+                content += chunk
+                if len(content) > most:
+                    raise InputError(f"{path}: larger than {most >> 20} MiB")
+                if forbidden and forbidden in chunk:
+                    raise InputError(f"{path}: not a text file")
+    except OSError as error:
+        raise of_file(path, error) from None
+    except ValueError:
+        raise InputError(f"{path}: not the name of a file") from None
+    return content
+
+
+@contextlib.contextmanager
+def output(path: str | None, parents: bool = False, binary: bool = False) -> Iterator[IO[Any]]:
+    """A text to write: standard output without a path, else a temporary file beside
+    the named one that takes its place when all is written; ``parents`` makes its folder,
+    ``binary`` takes bytes.
+    Raises InputError where that cannot be."""
+    try:
+        how: dict[str, Any] = {"mode": "wb"} if binary else {"mode": "w", **TEXT}
+        if path is None:
+            yield sys.stdout.buffer if binary else sys.stdout
+            sys.stdout.flush()
+            return
+        target = Path(os.path.realpath(path))
+        if target.is_symlink():
+            raise OSError(ELOOP, os.strerror(ELOOP))
+        if parents:
+            target.parent.mkdir(parents=True, exist_ok=True)
+        if target.is_dir() or path.endswith("/"):
+            raise IsADirectoryError(EISDIR, os.strerror(EISDIR))
+        if Path(path).exists() and not Path(path).is_file():
+            with Path(path).open(**how) as device:
+                yield device
+            return
+        with _temporary(target.parent, how) as file:
+            try:
+                yield file
+                file.flush()
+                Path(file.name).chmod(0o666 & ~_umask())
+                Path(file.name).replace(target)
+            except BaseException:
+                Path(file.name).unlink(missing_ok=True)
+                raise
+    except BrokenPipeError:
+        raise
+    except OSError as error:
+        name = "standard output" if path is None else path or "an empty name"
+        raise of_file(name, error) from None
+    except ValueError as error:
+        if "null byte" not in str(error):
+            raise
+        raise InputError(f"{path}: not the name of a file") from None
+
+
+def _temporary(folder: Path, how: dict[str, Any]) -> IO[Any]:
+    """A new file in a folder, locked while its writer lives. A writer that was killed
+    leaves one without a lock: these go."""
+    for left in folder.glob(f"{_TEMPORARY}*"):
+        with contextlib.suppress(OSError), left.open() as old:
+            fcntl.flock(old, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            left.unlink()
+    while True:
+        file: IO[Any] = tempfile.NamedTemporaryFile(  # noqa: SIM115
+            dir=folder, prefix=_TEMPORARY, delete=False, **how
+        )
+        with contextlib.suppress(OSError):  # no locks in this file system: nothing is cleaned
+            fcntl.flock(file, fcntl.LOCK_EX)
+        if os.fstat(file.fileno()).st_nlink:  # else another writer took it for a left one
+            return file
+        file.close()
+
+
+def _umask() -> int:
+    mask = os.umask(0)
+    os.umask(mask)
+    return mask

@@ -1,0 +1,144 @@
+"""What may end a search before it is done: a time limit, a signal, want of memory."""
+
+import contextlib
+import signal
+import time
+from collections.abc import Iterator
+from typing import Self
+
+from topomap.runtime.progress import Progress
+from topomap.runtime.status import INTERRUPT, exit_status
+
+MEMORY = "out of memory"
+SIGNALS = (signal.SIGINT, signal.SIGTERM)
+
+
+class Stopped(Exception):
+    """The search ended before all was found; the message says why."""
+
+
+STOPS = Stopped, MemoryError  # what leaves a partial answer
+
+
+class Attempt:
+    """A context that may end before its work is done; ``fault`` then says why, and is None
+    otherwise. So what was found until then can be told."""
+
+    fault: str | None = None
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, kind: object, error: BaseException | None, trace: object) -> bool:
+        if not isinstance(error, STOPS):
+            return False
+        self.fault = str(error) if isinstance(error, Stopped) else MEMORY
+        return True
+
+
+class Deadline:
+    """A time limit: ``at`` is its end by the monotonic clock, or None if there is none."""
+
+    def __init__(self, seconds: float | None = None):
+        self.at = None if seconds is None else time.monotonic() + seconds
+
+    @property
+    def passed(self) -> bool:
+        return self.at is not None and time.monotonic() > self.at
+
+    @contextlib.contextmanager
+    def waiting(self) -> Iterator[None]:
+        """Let the time limit wait until something else is done."""
+        begun = time.monotonic()
+        at, self.at = self.at, None
+        try:
+            yield
+        finally:
+            self.at = None if at is None else at + time.monotonic() - begun
+
+    @contextlib.contextmanager
+    def earlier(self, seconds: float) -> Iterator[None]:
+        """A part of the work may take this long at most."""
+        at, end = self.at, time.monotonic() + seconds
+        self.at = end if at is None else min(at, end)
+        try:
+            yield
+        finally:
+            self.at = at
+
+
+class Signals:
+    """As a context it takes SIGINT and SIGTERM, and notes that one came."""
+
+    came = False
+
+    def __enter__(self) -> "Signals":
+        def note(*_: object) -> None:
+            self.came = True
+
+        heeded = [number for number in SIGNALS if signal.getsignal(number) != signal.SIG_IGN]
+        self._handlers = [(number, signal.signal(number, note)) for number in heeded]
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        for number, handler in self._handlers:
+            signal.signal(number, handler)
+
+
+class Watch:
+    """What a search looks at between two answers: its deadline, and the signals and the
+    progress line of the command that began it, if one did. ``found`` counts the maps.
+
+    Without these it touches nothing of the process, and so goes with any thread.
+    """
+
+    def __init__(
+        self,
+        timeout: float | None = None,
+        progress: Progress | None = None,
+        signals: Signals | None = None,
+    ):
+        self.found = 0
+        self.deadline = Deadline(timeout)
+        self._progress = progress or Progress(quiet=True)
+        self._signals = signals
+        self.title, self.phase = self._progress.title, self._progress.phase
+
+    def tick(self) -> None:
+        """Show progress; raises Stopped past the time limit and after a signal."""
+        self._progress.show(self.found)
+        if self._signals and self._signals.came:
+            raise Stopped(INTERRUPT)
+        if self.deadline.passed:
+            raise Stopped("timeout")
+
+
+@contextlib.contextmanager
+def heeding(timeout: float | None = None, quiet: bool = False) -> Iterator[Watch]:
+    """The watch of a command: with a time limit in seconds, a progress line on stderr when it
+    takes long, and an end between two answers on SIGINT and SIGTERM."""
+    progress = Progress(quiet)
+    with Signals() as signals:
+        try:
+            yield Watch(timeout, progress, signals)
+        finally:
+            progress.close()
+
+
+class Run(Attempt):
+    """The work of a command: an attempt with a ``watch`` as above."""
+
+    def __init__(self, timeout: float | None = None, quiet: bool = False):
+        self._heeding = heeding(timeout, quiet)
+
+    def __enter__(self) -> Self:
+        self.watch = self._heeding.__enter__()
+        return self
+
+    def __exit__(self, kind: object, error: BaseException | None, trace: object) -> bool:
+        self._heeding.__exit__(None, None, None)
+        return super().__exit__(kind, error, trace)
+
+    def status(self, yes: bool) -> int:
+        """The exit status of the command: partial, or else yes or no."""
+        return exit_status(self.fault, yes)

@@ -1,0 +1,1 @@
+"""The paper's own search: hypotheses, and the orders in which their tree is traversed."""

@@ -1,0 +1,273 @@
+"""A node of the search tree of the paper's Figure 2, and the way to its children.
+
+Written from the definitions, not from the encodings: a second way to every answer. The map
+is changed in place: a step is entered, and undone. A gateway is the number
+``place * slots + slot``; a place is named by the step at which it was first visited.
+"""
+
+from collections.abc import Iterator, Sequence
+from itertools import combinations
+from typing import Any, NamedTuple
+
+from topomap.model.experience import DState, Experience
+from topomap.model.topology import TopologicalMap
+
+Face = tuple[int, ...]
+# What refuses an arrival: another view is seen there, or other landmarks; the marker is seen and
+# does not lie there, or lies there and is not seen; a place would be on a path twice, or the path
+# circular; and what was asked for.
+RULES = ("view", "landmark", "marker", "twice", "circular", "planarity", "perpendicular", "bound")
+
+
+class Link(NamedTuple):
+    """What a link changed: its gateways, the paths that it made one, and what the faces
+    and the places of the longer path were before."""
+
+    out: int
+    arrival: int
+    path: int
+    other: int
+    faces: tuple[Face, ...]
+    path_places: int
+    other_places: int
+
+
+class Hypothesis:
+    """A map, and the dstates at which the agent stood in it (``at``, as gateways).
+
+    ``links`` joins gateways, both ways. ``faces`` holds of each face the pending gateways,
+    in the order of its walk (the paper, section III.B): a link inside a face splits it; one
+    between two faces, which planarity forbids, makes them one. ``paths`` holds of each path
+    the set of its places, as bits.
+
+    With ``planar``, ``bound`` and ``perpendicular``, children that break these are dropped.
+    """
+
+    def __init__(
+        self,
+        experience: Experience,
+        planar: bool = False,
+        bound: int | None = None,
+        perpendicular: bool = False,
+    ):
+        self.experience, self.slots = experience, experience.slots
+        self.planar, self.bound, self.perpendicular = planar, bound, perpendicular
+        self.stars: list[Face] = []  # of the place that a step makes, counter-clockwise
+        self.views: dict[int, int] = {}  # at each of these gateways, numbered
+        numbers: dict[Any, int] = {}
+        seen = zip(experience.views, experience.landmarks, strict=True)
+        for step, (view, landmarks) in enumerate(seen):
+            first = step * self.slots
+            self.stars.append(tuple(first + slot for slot in sorted(view, reverse=True)))
+            for slot in view:
+                star = frozenset((other - slot) % self.slots for other in view)
+                self.views[first + slot] = numbers.setdefault((star, landmarks), len(numbers))
+        self.marker = experience.marker()
+        self.at = [0]
+        self.links: dict[int, int] = {}
+        self.faces: tuple[Face, ...] = (self.stars[0],)
+        self.paths: dict[int, int] = {}
+        self.places = 0
+        self.matches = 0  # links between known places: m in the paper's equation (1)
+        self._joined: dict[int, int] = {}  # an axis to another one of its path
+        self._trail: list[Link | None] = []
+        self._add_place(0)
+
+    @property
+    def steps(self) -> int:
+        """How many steps were entered."""
+        return len(self._trail)
+
+    @property
+    def dstates(self) -> tuple[DState, ...]:
+        """The place and the gateway after each step, as ``at/3`` names them."""
+        return tuple(divmod(gateway, self.slots) for gateway in self.at)
+
+    @property
+    def cost(self) -> tuple[int, int]:
+        """Paths and places: the policy prefers fewer."""
+        return len(self.paths), self.places
+
+    @property
+    def grown(self) -> bool:
+        """Whether the last step added a link, or there is no step."""
+        return not self._trail or self._trail[-1] is not None
+
+    @property
+    def genus(self) -> int:
+        """Genus, by Euler's formula: a tree with ``matches`` more links."""
+        return (self.matches + 1 - len(self.faces)) // 2
+
+    @property
+    def map(self) -> TopologicalMap:
+        """The map, apart from this object."""
+        return self.experience.map_of(self.dstates)
+
+    def closed(self) -> bool:
+        """No gateway is pending."""
+        return not any(self.faces)
+
+    def travelled(self) -> bool:
+        """Every path holds two places or more."""
+        return all(places & (places - 1) for places in self.paths.values())
+
+    def square(self) -> bool:
+        """The map is qualitatively perpendicular (the paper, section IV)."""
+        return all(self._square(places, (path,)) for path, places in self.paths.items())
+
+    def _square(self, places: int, own: tuple[int, ...]) -> bool:
+        """A path of these places, made of the paths ``own``, meets no other path twice,
+        and at two places no two paths that meet."""
+        met = [(places & of, of) for path, of in self.paths.items() if path not in own]
+        met = [(common, of) for common, of in met if common]
+        if any(common & (common - 1) for common, _ in met):
+            return False
+        return not any(x != y and a & b for (x, a), (y, b) in combinations(met, 2))
+
+    def out(self) -> int:
+        """The gateway by which the next step leaves."""
+        place, slot = divmod(self.at[-1], self.slots)
+        return place * self.slots + (slot + self.experience.turns[self.steps]) % self.slots
+
+    def path(self, gateway: int) -> int:
+        """The path through a gateway and its opposite one, named by such an axis of it."""
+        place, slot = divmod(gateway, self.slots)
+        axis = place * self.slots + slot % (self.slots // 2)
+        while axis in self._joined:
+            axis = self._joined[axis]
+        return axis
+
+    def face(self, gateway: int) -> Face:
+        """The face on which a pending gateway lies."""
+        return next(face for face in self.faces if gateway in face)
+
+    def fitting(self, gateways: Face) -> list[int]:
+        """Those gateways whose view is what the next step sees."""
+        seen = self.views[(self.steps + 1) * self.slots]
+        return [gateway for gateway in gateways if self.views[gateway] == seen]
+
+    def marked(self, gateway: int) -> bool:
+        """Whether the next step sees of the marker at this gateway what it does see."""
+        told = self.marker[self.steps + 1]
+        return told is None or told[1] == (gateway // self.slots == self.at[told[0]] // self.slots)
+
+    def children(self) -> list[int]:
+        """Where the next step can arrive: the gateways of known places, and gateway 0 of
+        a new one. Where the link is known, its other end, if the view is the predicted one.
+        """
+        out = self.out()
+        if out in self.links:
+            return [gateway for gateway in self.fitting((self.links[out],)) if self.marked(gateway)]
+        near = self.face(out) if self.planar else tuple(g for face in self.faces for g in face)
+        arrivals = [g for g in self.fitting(near) if g != out and self._joins(out, g)]
+        if self.bound is None or self.places < self.bound:
+            arrivals.append((self.steps + 1) * self.slots)
+        return [gateway for gateway in arrivals if self.marked(gateway)]
+
+    def tried(self) -> Iterator[tuple[int, str | None]]:
+        """Where the next step might arrive: at the other end of its link; or if that is not
+        known, at any other pending gateway, or a new place. Each with the first of ``RULES``
+        that refuses it; the children are those that none does."""
+        out = self.out()
+        if out in self.links:
+            yield self.links[out], self._mistaken(self.links[out])
+            return
+        face = self.face(out)
+        for gateway in (g for face in self.faces for g in face if g != out):
+            rule = self._mistaken(gateway)
+            if rule is None and not self._joins(out, gateway):
+                paths = self.path(out), self.path(gateway)
+                common = self.paths[paths[0]] & self.paths[paths[1]]
+                rule = "twice" if common else "perpendicular"
+                rule = "circular" if paths[0] == paths[1] else rule
+            if rule in (None, "perpendicular") and self.planar and gateway not in face:
+                rule = "planarity"
+            yield gateway, rule
+        new = (self.steps + 1) * self.slots
+        full = self.bound is not None and self.places >= self.bound
+        yield new, "marker" if not self.marked(new) else "bound" if full else None
+
+    def _mistaken(self, gateway: int) -> str | None:
+        """The rule by which the next step, which sees something, did not arrive at a gateway."""
+        step, (place, slot) = self.steps + 1, divmod(gateway, self.slots)
+        if self.views[gateway] == self.views[step * self.slots]:
+            return None if self.marked(gateway) else "marker"
+        star = {(other - slot) % self.slots for other in self.experience.views[place]}
+        return "landmark" if star == self.experience.views[step] else "view"
+
+    def _joins(self, out: int, arrival: int) -> bool:
+        """Whether a link between the gateways respects the path axiom, and ``perpendicular``:
+        it makes the two paths one, so they are two and share no place."""
+        paths = self.path(out), self.path(arrival)
+        places, more = (self.paths[path] for path in paths)
+        return not places & more and (not self.perpendicular or self._square(places | more, paths))
+
+    def enter(self, arrival: int) -> None:
+        """Go one step on, to a gateway that is one of the children."""
+        out = self.out()
+        self.at.append(arrival)
+        self._trail.append(None if out in self.links else self._add_link(out, arrival))
+
+    def _add_link(self, out: int, arrival: int) -> Link:
+        place = arrival // self.slots
+        faces = self.faces
+        here = self.face(out)
+        rest = _after(here, out)
+        others = [face for face in faces if face is not here]
+        if place == self.steps + 1:
+            self._add_place(place)
+            self.faces = (_after(self.stars[place], arrival) + rest, *others)
+        elif arrival in rest:
+            middle = rest.index(arrival)
+            self.faces = (rest[:middle], rest[middle + 1 :], *others)
+        else:
+            there = self.face(arrival)
+            others.remove(there)
+            self.faces = (rest + _after(there, arrival), *others)
+        self.matches += place != self.steps + 1
+        self.links[out], self.links[arrival] = arrival, out
+        path, other = self.path(out), self.path(arrival)
+        link = Link(out, arrival, path, other, faces, self.paths[path], self.paths[other])
+        self._joined[other] = path
+        self.paths[path] |= self.paths.pop(other)
+        return link
+
+    def undo(self) -> None:
+        """Go one step back."""
+        link = self._trail.pop()
+        arrival = self.at.pop()
+        if link is None:
+            return
+        del self.links[link.out], self.links[arrival], self._joined[link.other]
+        self.paths[link.path], self.paths[link.other] = link.path_places, link.other_places
+        self.faces = link.faces
+        if arrival // self.slots == self.steps + 1:
+            self._remove_place(self.steps + 1)
+        else:
+            self.matches -= 1
+
+    def _add_place(self, place: int) -> None:
+        self.places += 1
+        for gateway in self.stars[place]:
+            self.paths[self.path(gateway)] = 1 << place
+
+    def _remove_place(self, place: int) -> None:
+        self.places -= 1
+        for gateway in self.stars[place]:
+            self.paths.pop(self.path(gateway), None)
+
+    def goto(self, dstates: Sequence[DState]) -> None:
+        """Go to another node of the tree, by way of what the two have in common."""
+        at = [place * self.slots + slot for place, slot in dstates]
+        pairs = enumerate(zip(self.at, at, strict=False))
+        common = next((step for step, (a, b) in pairs if a != b), min(len(self.at), len(at)))
+        while len(self.at) > common:
+            self.undo()
+        for arrival in at[common:]:
+            self.enter(arrival)
+
+
+def _after(face: Face, gateway: int) -> Face:
+    """The other gateways of a face, in the order of its walk from this one on."""
+    index = face.index(gateway)
+    return face[index + 1 :] + face[:index]

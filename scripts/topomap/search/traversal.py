@@ -1,0 +1,172 @@
+"""Search of the tree of hypotheses (the paper, Figure 2): the second way to every answer.
+
+Each order stands at the nodes of the tree, one after the other, in one ``Hypothesis`` that
+it moves; what is to be known of a node is read while it stands there.
+"""
+
+import heapq
+from collections.abc import Collection, Iterator, Sequence
+from dataclasses import replace
+from itertools import groupby
+from operator import itemgetter
+
+from topomap.model.experience import Experience
+from topomap.model.found import Cube, Found
+from topomap.model.query import Query
+from topomap.model.vocabulary import PRUNING
+from topomap.runtime.watch import Watch
+from topomap.search.hypothesis import Hypothesis
+
+OFTEN = 500  # nodes between two looks at the clock
+
+
+def root(experience: Experience, query: Query) -> Hypothesis:
+    """The root of the tree in which the children that the query forbids are dropped."""
+    if query.horizon is not None:
+        experience = experience.cut(query.horizon)
+    planar, perpendicular = (part in query.parts for part in PRUNING)
+    return Hypothesis(experience, planar, query.places, perpendicular)
+
+
+def depth_first(node: Hypothesis, watch: Watch | None = None) -> Iterator[Hypothesis]:
+    """The nodes from this one down; memory grows with the steps, not with the tree."""
+    open_children = [_children(node)[::-1]]
+    yield node
+    nodes = 0
+    while open_children:
+        if not open_children[-1]:
+            open_children.pop()
+            if open_children:
+                node.undo()
+            continue
+        node.enter(open_children[-1].pop())
+        open_children.append(_children(node)[::-1])
+        nodes += 1
+        if watch and nodes % OFTEN == 0:
+            watch.tick()
+        yield node
+
+
+def breadth_first(node: Hypothesis, watch: Watch | None = None) -> Iterator[Hypothesis]:
+    """The nodes from this one down, step by step; memory holds two levels of the tree."""
+    level = [top := node.dstates]
+    while level:
+        children = []
+        for number, at in enumerate(level):
+            node.goto(at)
+            yield node
+            children += [(*at, divmod(arrival, node.slots)) for arrival in _children(node)]
+            if watch and number % OFTEN == 0:
+                watch.tick()
+        level = children
+    node.goto(top)
+
+
+def best_first(node: Hypothesis, watch: Watch | None = None) -> Iterator[Hypothesis]:
+    """The nodes by the optimality policy (the paper, section IV): fewest paths, then fewest
+    places; among equals the deepest. Taking the next one after a leaf is backtracking."""
+    border = [(node.cost, 0, node.dstates)]
+    nodes = 0
+    while border:
+        *_, at = heapq.heappop(border)
+        node.goto(at)
+        nodes += 1
+        if watch and nodes % OFTEN == 0:
+            watch.tick()
+        yield node
+        for arrival in _children(node):
+            node.enter(arrival)
+            heapq.heappush(border, (node.cost, -node.steps, node.dstates))
+            node.undo()
+
+
+ORDERS = {"breadth": breadth_first, "depth": depth_first, "best": best_first}
+
+
+def _children(node: Hypothesis) -> list[int]:
+    return node.children() if node.steps < node.experience.steps else []
+
+
+def cubes(experience: Experience, query: Query, least: int = 64) -> tuple[list[Cube], int]:
+    """Nodes that part the hypotheses, at least so many of them if there are as many, so that
+    a long run can be shared out, cut and resumed.
+
+    They are of like size, as far as it can be told from the first level of the tree that has
+    32 times as many nodes (or else the last one): the parts of the tree with more of
+    these are parted again. The second figure is the step of that level: the hypotheses after
+    that step, and after each later one, begin with one of the nodes each."""
+    level: list[Cube] = []
+    for node in breadth_first(root(experience, query)):
+        if level and len(node.at) > len(level[0]):
+            if len(level) >= 32 * least:
+                break
+            level = []
+        level.append(node.dstates)
+    parts: list[Cube] = []
+    open_parts = [(1, level)]
+    while open_parts:
+        size, under = open_parts.pop()
+        if len(under) * least <= len(level) or size == len(under[0]):
+            parts.append(under[0][:size])
+        else:
+            groups = groupby(under, key=itemgetter(size))
+            open_parts += [(size + 1, list(group)) for _, group in groups][::-1]
+    return parts, len(level[0]) - 1
+
+
+def top(node: Hypothesis, cubes: Collection[Cube]) -> Iterator[Hypothesis]:
+    """The nodes from this one down that are of none of the cubes' parts of the tree."""
+    border = [node.dstates]
+    while border:
+        at = border.pop()
+        if at not in cubes:
+            node.goto(at)
+            yield node
+            border += [(*at, divmod(arrival, node.slots)) for arrival in _children(node)]
+
+
+def hypotheses(
+    experience: Experience,
+    query: Query,
+    watch: Watch,
+    kind: str | None = None,
+    cubes: Sequence[Cube] | None = None,
+) -> Iterator[Found | None]:
+    """What ``solver.hypotheses`` gives, in the order of the tree."""
+    node = root(experience, query)
+    best: list[Found] = []
+    for cube in cubes or [((0, 0),)]:
+        node.goto(cube)
+        watch.tick()
+        for _ in depth_first(node, watch):
+            if node.steps < node.experience.steps:
+                continue
+            cost = _cost(node, query)
+            if (best and cost > best[0].cost) or not _holds(node, query.parts):
+                continue
+            watch.found += 1
+            found = Found(node.dstates, kind or query.kind, cost, not query.optimizes)
+            if query.optimizes:
+                best = [*best, found] if best and cost == best[0].cost else [found]
+            if len(best) < 2:
+                yield found
+        if cubes is not None:
+            yield None
+    for found in best:
+        yield replace(found, proved=True)
+
+
+def _cost(node: Hypothesis, query: Query) -> tuple[int, ...]:
+    """What the query minimises, most important first."""
+    genus = (node.genus,) if "genus" in query.parts else ()
+    return genus + (node.cost if "minimal" in query.parts else ())
+
+
+def _holds(node: Hypothesis, parts: Collection[str]) -> bool:
+    """Whether the map has the properties that do not prune the tree."""
+    return (
+        ("euler" not in parts or node.genus == 0)
+        and ("closed" not in parts or node.closed())
+        and ("travelled" not in parts or node.travelled())
+        and ("boundary" not in parts or node.map.boundaries_consistent())
+    )

@@ -1,0 +1,1 @@
+"""clingo, wherever it is called."""

@@ -1,0 +1,429 @@
+"""An experience as it happens: after each step how many hypotheses there are, the best maps,
+and what is certain.
+
+clingo keeps its program (``encodings/online.lp``), and each step grounds its own part alone. A
+step that is taken back is switched off; the step that comes in its place has a number of its
+own in the program. How many hypotheses there are, the search tells from those that there were
+a step before.
+"""
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import clingo
+
+from topomap.model.experience import MARKER, DState, Experience
+from topomap.model.query import Query
+from topomap.model.topology import Gateway
+from topomap.runtime.folders import ENCODINGS
+from topomap.runtime.limits import MOST_COUNTED
+from topomap.runtime.watch import MEMORY, Stopped, Watch
+from topomap.search.hypothesis import Hypothesis
+from topomap.search.traversal import OFTEN, root
+
+TRIED = 10  # times as many nodes are visited to tell that there are more
+MAPS = 100  # best maps that are kept
+
+Same = tuple[int, int]  # two steps: the agent was at one place after both
+Linked = tuple[int, int, int, int]  # T S U R: gateways, seen from where it stood after T and U
+
+
+@dataclass(frozen=True)
+class Certain:
+    """What holds in all hypotheses, said of steps."""
+
+    same: frozenset[Same] = frozenset()
+    new: frozenset[int] = frozenset()  # steps that came to a place for the first time
+    linked: frozenset[Linked] = frozenset()
+
+    def since(self, before: "Certain") -> "Certain":
+        """What was not certain before."""
+        return Certain(self.same - before.same, self.new - before.new, self.linked - before.linked)
+
+
+@dataclass(frozen=True)
+class Status:
+    """What is known after a step. ``exact`` is false if there are more hypotheses than
+    ``hypotheses``; ``none_since`` is the first step after which there is none. ``best`` are the
+    dstates of each of the best maps, ``all_best`` tells whether they are all. ``fault`` is why
+    something is missing."""
+
+    step: int
+    hypotheses: int | None = None
+    exact: bool = False
+    none_since: int | None = None
+    kind: str | None = None
+    cost: tuple[int, ...] = ()
+    best: tuple[tuple[DState, ...], ...] = ()
+    all_best: bool = False
+    certain: Certain | None = None
+    fault: str | None = None
+
+
+class Follower:
+    """An exploration that goes on, from its start; steps can be taken back."""
+
+    def __init__(
+        self,
+        slots: int,
+        view: frozenset[int],
+        landmarks: frozenset[str] = frozenset(),
+        planar: bool = False,
+        bound: int | None = None,
+        most: int = MOST_COUNTED,
+        marks: frozenset[str] = frozenset(),
+    ):
+        self.experience = Experience(slots, (view,), (), (landmarks,), *_marked(marks, 0))
+        self.most = most
+        self._query = Query(frozenset(["planar"] if planar else ()), bound)
+        self._parts = ["step", *(["planar"] if planar else [])]
+        arguments = ["0", "--project"]
+        if bound is not None:
+            self._parts.append("bound")
+            arguments += ["-c", f"places={bound}"]
+        self._control = clingo.Control(arguments)
+        self._control.load(str(ENCODINGS / "online.lp"))
+        self._control.load(str(ENCODINGS / "online/certain.lp"))
+        self._boundaries = _Boundaries(self)
+        self._control.register_propagator(self._boundaries)
+        self._control.add("base", [], f"slots({slots}). #external bounded.")
+        self.visits: list[int] = []  # the number of each step in the program
+        self._numbered = 0
+        self._level: list[tuple[int, ...]] = [(0,)]  # the hypotheses after some step
+        self._wide = False  # a later step has too many of them
+        self._none: int | None = None
+        self._ground(("base", []))
+
+    @property
+    def rules(self) -> int:
+        """The ground rules so far."""
+        return int(self._control.statistics["problem"]["lp"]["rules"])
+
+    def step(
+        self,
+        turn: int,
+        view: frozenset[int],
+        landmarks: frozenset[str] = frozenset(),
+        marks: frozenset[str] = frozenset(),
+    ) -> None:
+        """Go a step on; ``marks`` tells which of drop, pick and marker hold after it. The caller
+        has seen to it that the turn leads to a gateway, and the marker is not out twice."""
+        seen = self.experience
+        known = seen.drops, seen.picks, seen.markers
+        now = _marked(marks, seen.steps + 1)
+        self.experience = Experience(
+            seen.slots,
+            (*seen.views, view),
+            (*seen.turns, turn),
+            (*seen.landmarks, landmarks),
+            *(steps | more for steps, more in zip(known, now, strict=True)),
+        )
+        self._ground()
+
+    def _ground(self, *parts: tuple[str, list[clingo.Symbol]]) -> None:
+        visit, seen = self._numbered, self.experience
+        step = seen.steps
+        facts = [f"view({visit},{slot})." for slot in sorted(seen.views[step])]
+        facts += [f"landmark({visit},{term})." for term in sorted(seen.landmarks[step])]
+        marked = zip(MARKER, (seen.drops, seen.picks, seen.markers), strict=True)
+        facts += [f"{name}({visit})." for name, steps in marked if step in steps]
+        if step:
+            facts.append(f"turn({visit},{seen.turns[-1]}).")
+            facts.append(f"after({visit},{self.visits[-1]}).")
+        self._control.add(f"facts{visit}", [], " ".join(facts))
+        mine = [(part, [clingo.Number(visit)]) for part in self._parts]
+        self._control.ground([*parts, (f"facts{visit}", []), *mine])
+        self.visits.append(visit)
+        self._numbered += 1
+
+    def undo(self, steps: int = 1) -> None:
+        """Take the last steps back; there are as many."""
+        left = self.experience.steps - steps
+        self.experience = self.experience.cut(left)
+        for visit in self.visits[left + 1 :]:
+            self._control.release_external(_atom("active", visit))
+        del self.visits[left + 1 :]
+        if len(self._level[0]) > left + 1:
+            self._level = [(0,)]
+        self._wide = False
+        if self._none is not None and self._none > left:
+            self._none = None
+
+    def status(self, watch: Watch) -> Status:
+        """What is known now; at the time limit, what is known until then."""
+        known = Status(self.experience.steps)
+        try:
+            kind, cost, best = self.best(watch)
+            shown, every = tuple(best[:MAPS]), len(best) <= MAPS
+            known = replace(known, kind=kind, cost=cost, best=shown, all_best=every)
+            certain = self.certain(watch)
+            known = replace(known, certain=certain)
+            number, exact = self.count(watch)
+            if not certain.new and self._none is None:  # where a step begins is always new
+                self._none, number, exact = known.step, 0, True
+            if number >= 0:
+                known = replace(known, hypotheses=number, exact=exact, none_since=self._none)
+        except (Stopped, MemoryError) as stop:
+            known = replace(known, fault=str(stop) or MEMORY)
+        return known
+
+    def count(self, watch: Watch) -> tuple[int, bool]:
+        """How many hypotheses there are, and true; or a number that they are more than (-1 if
+        none was found as yet), and false."""
+        if self._none is not None:
+            return 0, True
+        node = root(self.experience, self._query)
+        while len(self._level[0]) <= self.experience.steps:
+            level = None if self._wide else self._next(node, watch)
+            if level is None:
+                self._wide = True
+                return self._more(node, watch)
+            if not level:
+                self._none = len(self._level[0])
+                return 0, True
+            self._level = level
+        return len(self._level), True
+
+    def _next(self, node: Hypothesis, watch: Watch) -> list[tuple[int, ...]] | None:
+        """The next level of the tree, if it is not too large."""
+        level: list[tuple[int, ...]] = []
+        before = tuple(node.at)
+        for number, at in enumerate(self._level):
+            _go(node, before, at)
+            before = at
+            level += [(*at, arrival) for arrival in node.children()]
+            if len(level) > self.most:
+                return None
+            if number % OFTEN == 0:
+                watch.tick()
+        return level
+
+    def _more(self, node: Hypothesis, watch: Watch) -> tuple[int, bool]:
+        """The same by the depth, where a level between is too large to be kept."""
+        leaves = nodes = deepest = 0
+        last = self.experience.steps
+        kept = []
+        before = tuple(node.at)
+        for top in self._level:
+            border = [top]
+            while border:
+                _go(node, before, at := border.pop())
+                before = at
+                nodes += 1
+                if nodes % OFTEN == 0:
+                    watch.tick()
+                for arrival in node.children():
+                    if len(at) < last:
+                        border.append((*at, arrival))
+                    else:
+                        leaves += 1
+                        kept.append((*at, arrival))
+                if leaves > self.most or nodes > TRIED * self.most:
+                    return min(leaves - 1, self.most), False
+                deepest = max(deepest, len(at))
+        if kept:
+            self._level, self._wide = sorted(kept), False
+        else:
+            self._none = deepest
+        return leaves, True
+
+    def best(self, watch: Watch) -> tuple[str | None, tuple[int, ...], list[tuple[DState, ...]]]:
+        """The best maps, one more than ``MAPS`` at most: of what kind they are, and their cost."""
+        closed = _atom("closed", self.visits[-1])
+        for kind, assumed in (("optimal", [(closed, True)]), ("best so far", [])):
+            found: list[tuple[DState, ...]] = []
+            cost: list[int] = []
+
+            def read(model: clingo.Model, found: Any = found, cost: Any = cost) -> bool:
+                if model.optimality_proven:
+                    cost[:] = model.cost
+                    found.append(self._dstates(model))
+                return len(found) <= MAPS
+
+            self._configure("auto", "optN")
+            self._control.assign_external(_atom("bounded"), True)
+            try:
+                self._solve(watch, assumed, read)
+            finally:
+                self._control.assign_external(_atom("bounded"), False)
+            if found:
+                return kind, tuple(cost), sorted(found)
+        return None, (), []
+
+    def certain(self, watch: Watch) -> Certain:
+        """What holds in all hypotheses; nothing, if there is none."""
+        atoms: list[clingo.Symbol] = []
+
+        def read(model: clingo.Model) -> bool:
+            atoms[:] = model.symbols(shown=True)
+            return True
+
+        self._configure("cautious", "ignore")
+        self._solve(watch, [], read)
+        step = {visit: number for number, visit in enumerate(self.visits)}
+        same, new = set(), set()
+        first: dict[int, tuple[int, int]] = {}
+        for atom in atoms:
+            numbers = [argument.number for argument in atom.arguments]
+            if atom.name == "at" or any(number not in step for number in numbers[:2]):
+                continue
+            if atom.name == "new":
+                new.add(step[numbers[0]])
+            elif atom.name == "one":
+                same.add((step[numbers[0]], step[numbers[1]]))
+            elif atom.name == "same":
+                here, there = step[numbers[0]], step[numbers[1]]
+                first[there] = min(first.get(there, (here, numbers[2])), (here, numbers[2]))
+        return Certain(frozenset(same), frozenset(new), frozenset(self._linked(first)))
+
+    def _linked(self, first: dict[int, tuple[int, int]]) -> Iterator[Linked]:
+        """The links of which it is certain that the steps that made them were at places seen
+        before: said of the first visits there."""
+        for step, turn in enumerate(self.experience.turns, 1):
+            if step - 1 in first or step in first:
+                here, shift = first.get(step - 1, (step - 1, 0))
+                there, slot = first.get(step, (step, 0))
+                yield here, (shift + turn) % self.experience.slots, there, slot
+
+    def _dstates(self, model: clingo.Model) -> tuple[DState, ...]:
+        step = {visit: number for number, visit in enumerate(self.visits)}
+        facts = [
+            [argument.number for argument in atom.arguments]
+            for atom in model.symbols(shown=True)
+            if atom.name == "at"
+        ]
+        at = {step[visit]: (step[place], slot) for visit, place, slot in facts if visit in step}
+        return tuple(at[number] for number in range(len(self.visits)))
+
+    def _configure(self, enumerate_by: str, optimize_by: str) -> None:
+        configuration: Any = self._control.configuration.solve
+        configuration.enum_mode, configuration.opt_mode = enumerate_by, optimize_by
+
+    def _solve(
+        self,
+        watch: Watch,
+        assumed: Sequence[tuple[clingo.Symbol, bool]],
+        read: Callable[[clingo.Model], bool],
+    ) -> None:
+        with self._control.solve(assumed, on_model=read, async_=True) as handle:
+            while not handle.wait(0.1):
+                watch.tick()  # ends the call, if it raises
+            handle.get()
+
+
+def _atom(name: str, *numbers: int) -> clingo.Symbol:
+    return clingo.Function(name, [clingo.Number(number) for number in numbers])
+
+
+def _marked(marks: frozenset[str], step: int) -> list[frozenset[int]]:
+    """The step, if the marker is put down after it, is taken up, is seen."""
+    return [frozenset([step] if name in marks else []) for name in MARKER]
+
+
+def _go(node: Hypothesis, before: tuple[int, ...], at: tuple[int, ...]) -> None:
+    """Go from one node of the tree, where it stands, to another one."""
+    common = min(len(before), len(at))
+    while before[:common] != at[:common]:
+        common -= 1
+    for _ in range(common, len(node.at)):
+        node.undo()
+    for arrival in at[common:]:
+        node.enter(arrival)
+
+
+class _Boundaries(clingo.Propagator):
+    """Refuses, where ``bounded`` holds, maps in which a place is left and right of a path, or
+    on it and beside it (semantics: "Boundary consistency"), by the steps that make it so. As
+    links are added this stays so; a clause holds for all steps to come."""
+
+    def __init__(self, follower: Follower):
+        self._of = follower
+        self._at: list[list[tuple[int, int, int]]] = []  # by steps: place, slot, literal
+        self._bounded = 0
+
+    def init(self, init: clingo.PropagateInit) -> None:
+        """Learn the literals of ``at/3``."""
+        step = {visit: number for number, visit in enumerate(self._of.visits)}
+        self._at = [[] for _ in step]
+        for atom in init.symbolic_atoms.by_signature("at", 3):
+            visit, place, slot = (argument.number for argument in atom.symbol.arguments)
+            if visit in step:
+                literal = init.solver_literal(atom.literal)
+                self._at[step[visit]].append((place, slot, literal))
+        bounded = init.symbolic_atoms[_atom("bounded")]
+        self._bounded = init.solver_literal(bounded.literal) if bounded else -1
+        init.check_mode = clingo.PropagatorCheckMode.Total
+
+    def check(self, control: clingo.PropagateControl) -> None:
+        """Forbid what is wrong with the map that was found."""
+        true = control.assignment.is_true
+        if not true(self._bounded):
+            return
+        where = [next(one for one in of if true(one[2])) for of in self._at]
+        at = [(place, slot) for place, slot, _ in where]
+        seen = self._of.experience
+        for steps in crossed(seen.slots, seen.turns, at):
+            visits = {visit for step in steps for visit in (step - 1, step)}
+            nogood = [self._bounded, *(where[visit][2] for visit in sorted(visits))]
+            if not control.add_nogood(nogood):
+                return
+
+
+def crossed(slots: int, turns: Sequence[int], at: Sequence[DState]) -> list[set[int]]:
+    """Why the boundaries of a map are not consistent: sets of steps, the links of which make
+    it so, the smallest first."""
+    links: dict[Gateway, tuple[Gateway, int]] = {}
+    for step, (turn, (place, slot), arrival) in enumerate(zip(turns, at, at[1:], strict=False), 1):
+        out = place, (slot + turn) % slots
+        if out not in links:
+            links[out], links[arrival] = (arrival, step), (out, step)
+
+    def ray(gateway: Gateway) -> Iterator[tuple[Gateway, int]]:
+        """The arrivals, straight on, each with the step that made the link."""
+        while gateway in links:
+            arrival, step = links[gateway]
+            yield arrival, step
+            gateway = arrival[0], (arrival[1] + slots // 2) % slots
+
+    found: list[set[int]] = []
+    for end, slot in links:
+        # Each path once, from its end.
+        if (end, (slot + slots // 2) % slots) in links:
+            continue
+        path, by = [(end, slot)], []
+        for (place, entry), link in ray((end, slot)):
+            path.append((place, (entry + slots // 2) % slots))
+            by.append(link)
+        if path[-1] < path[0]:
+            continue
+        found += _sides(slots, path, by, ray)
+    return sorted(found, key=len)[:10]
+
+
+def _sides(
+    slots: int,
+    path: Sequence[Gateway],
+    by: Sequence[int],
+    ray: Callable[[Gateway], Iterator[tuple[Gateway, int]]],
+) -> Iterator[set[int]]:
+    """Why a place is at both sides of a path, or on it and beside it."""
+    on = {place: number for number, (place, _) in enumerate(path)}
+    beside: dict[Any, tuple[bool, int, list[int]]] = {}
+    for number, (place, heading) in enumerate(path):
+        for turn in range(1, slots):
+            if turn == slots // 2:
+                continue
+            used: list[int] = []
+            for (met, _), step in ray((place, (heading + turn) % slots)):
+                used.append(step)
+                right = turn < slots // 2
+                side, other, rest = beside.get(met, (right, number, []))
+                if met in on:
+                    other = on[met]
+                elif met not in beside:
+                    beside[met] = right, number, list(used)
+                    continue
+                elif side == right:
+                    continue
+                yield {*used, *rest, *by[min(number, other) : max(number, other)]}

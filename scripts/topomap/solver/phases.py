@@ -1,0 +1,252 @@
+"""Large maps in phases: what is certain is found by small programs first, so that the whole
+one grounds over what is left.
+
+All that is found, but for ``rare``, holds in every map that is asked for, so the answers stay
+the same: each program asks for less than they must have. (Of the marker those know nothing that
+do not load the theory.) ``encodings/fast/phases/`` has the programs:
+
+1. ``visits.lp``: which visits can be of one place, by pairs; settled while grounding.
+2. for closed maps with at most so many places: the theory without planarity, but with
+   ``ends.lp``: at which gateways a visit can be in any such map (brave consequences).
+
+For large closed and perpendicular maps, where the counting argument of ``runs.lp`` applies:
+
+3. ``runs.lp``: which runs never cross and never lie on one path; a call for each pair.
+4. the theory without planarity: which visits are the first of their place; a call for each.
+5. if the map is to be planar, the theory with planarity, on longer and longer beginnings of
+   the exploration: brave consequences again.
+
+And where it does not apply, ``lines.lp``: which visits are of one place in any map (brave
+consequences). It has few rules, and clasp is quick on it. If the map is to be planar, clauses
+of ``plane.py`` join them as they are needed. If this is not settled in time, what was seen in
+no map yet is rare: the maps without it are looked for first.
+"""
+
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import clingo
+from clingo import Function, Number, Symbol
+
+from topomap.model.experience import Experience
+from topomap.solver.plane import Planarity
+
+if TYPE_CHECKING:
+    from topomap.model.query import Query
+
+SQUARE = {"closed", "perpendicular"}
+LEAST = 80  # steps: shorter explorations are as soon done in one call
+LEAST_BOUNDED = 40  # steps, the same for maps with a bound
+TRY = 20  # conflicts for a question whose answer may be left open
+IN_VAIN = 50  # such questions in a row: there is no more to be found
+TRY_BOUNDED = 200_000  # conflicts for all maps with a bound
+TRY_HARD = 200_000  # conflicts for one beginning, or for all lines
+BRAVE = ("0", "--enum-mode=brave")
+STRIDE = 6  # steps, at least, from one beginning to the next
+
+# Called often, with the control that is solved next; raises what ends the work.
+Heed = Callable[[clingo.Control], None]
+
+
+def serve(experience: Experience, query: "Query") -> bool:
+    """Whether there are phases for such a query."""
+    return _bounded(experience, query) or _square(experience, query)
+
+
+def _bounded(experience: Experience, query: "Query") -> bool:
+    long = _steps(experience, query) >= LEAST_BOUNDED
+    return long and "closed" in query.parts and query.places is not None
+
+
+def _square(experience: Experience, query: "Query") -> bool:
+    long = _steps(experience, query) >= LEAST
+    return long and query.parts >= SQUARE and experience.slots == 4
+
+
+def _steps(experience: Experience, query: "Query") -> int:
+    return experience.steps if query.horizon is None else min(query.horizon, experience.steps)
+
+
+def program(experience: Experience, query: "Query") -> tuple[list[str], list[str]]:
+    """The files and the options with which clingo solves what the phases leave of a query,
+    besides its parts."""
+    if _bounded(experience, query) and not (query.optimizes or "perpendicular" in query.parts):
+        return ["phases/topomap", "phases/earlier"], ["--heuristic=Domain"]
+    return ["phases/topomap"], []
+
+
+def found(
+    experience: Experience, query: "Query", folder: Path, heed: Heed, say: Callable[[str], None]
+) -> str:
+    """Facts for ``phases/topomap.lp`` that hold in every map which the query asks for.
+
+    ``folder`` has the fast encodings; ``heed`` is called between two calls of clingo. The
+    controls that it is given may be interrupted; what is found is then less, and as true.
+    ``say`` is told what is done.
+    """
+    bounded, square = _bounded(experience, query), _square(experience, query)
+    if query.horizon is not None:
+        experience = experience.cut(query.horizon)
+    work = _Phases(experience.facts(), folder, heed)
+    say("which visits can be of one place")
+    few = work.visits()
+    if bounded:
+        say(f"with {query.places} places")
+        work.bounded(query.places or 0)
+    if square and few:
+        say("which runs can lie on one path")
+        work.runs()
+        say("which places are new")
+        work.new()
+        if "planar" in query.parts:
+            say("longer and longer beginnings")
+            work.beginnings(experience)
+    elif square:
+        say("which runs lie on one path")
+        work.lines(Planarity(experience.slots) if "planar" in query.parts else None)
+    return work.facts()
+
+
+class _Phases:
+    def __init__(self, facts: str, folder: Path, heed: Heed):
+        self._facts, self._folder, self._heed = facts, folder, heed
+        self._pairs: list[Symbol] = []  # fits/3 and iff/6
+        self._found: list[Symbol] = []
+
+    def facts(self) -> str:
+        """All that was found."""
+        found = [Function("found", [symbol]) for symbol in self._found]
+        return "".join(f"{symbol}.\n" for symbol in [*self._pairs, *found])
+
+    def _grounded(self, *files: str, arguments: Iterable[str] = ()) -> clingo.Control:
+        control = clingo.Control([*arguments])
+        self._heed(control)
+        for file in files:
+            control.load(str(self._folder / f"{file}.lp"))
+        control.add("base", [], self._facts + self.facts())
+        control.ground()
+        self._heed(control)
+        return control
+
+    def visits(self) -> bool:
+        """Whether ``runs.lp`` has a use."""
+        control = self._grounded("phases/visits")
+        shown: Sequence[Symbol] = []
+        with control.solve(yield_=True) as models:
+            for model in models:
+                shown = model.symbols(shown=True)
+        few = Function("few")
+        self._pairs = [symbol for symbol in shown if symbol != few]
+        return few in shown
+
+    def runs(self) -> None:
+        control = self._grounded("phases/runs")
+        atoms = control.symbolic_atoms
+        through = sorted(atom.symbol.arguments[0] for atom in atoms.by_signature("through", 1))
+        pairs = [(a, b) for a in through for b in through if a < b]
+        for number, relation in enumerate(("joined", "grid")):
+            for asked in self._refuted(control, [Function(relation, pair) for pair in pairs]):
+                self._know("never", *asked.arguments, Number(number))
+
+    def new(self) -> None:
+        control = self._grounded("phases/topomap", "closed", "perpendicular")
+        asked = [atom.symbol for atom in control.symbolic_atoms.by_signature("new", 1)]
+        for old in self._refuted(control, asked):
+            self._know("old", *old.arguments)
+        for new in self._refuted(control, asked, False):
+            self._know("new", *new.arguments)
+
+    def _refuted(
+        self, control: clingo.Control, asked: Sequence[Symbol], value: bool = True
+    ) -> Iterator[Symbol]:
+        """Those atoms which have that value in no answer, each asked in a short call; it ends
+        when there was no such atom for long."""
+        seen: set[Symbol] = set()  # they have it in some answer
+        vain = 0
+        _limit(control, TRY)
+
+        def note(model: clingo.Model) -> None:
+            shown = set(model.symbols(atoms=True))
+            seen.update(atom for atom in asked if (atom in shown) == value)
+
+        for atom in asked:
+            self._heed(control)
+            if atom in seen:
+                continue
+            if control.solve([(atom, value)], on_model=note).unsatisfiable:
+                vain = 0
+                yield atom
+            else:
+                vain += 1
+                if vain == IN_VAIN:
+                    return
+
+    def _know(self, name: str, *arguments: Symbol) -> None:
+        self._found.append(Function(name, arguments))
+
+    def bounded(self, places: int) -> None:
+        files = "closed", "bound", "phases/ends"
+        self._possible(TRY_BOUNDED, files, "--eq=0", "-c", f"places={places}")
+
+    def beginnings(self, experience: Experience) -> None:
+        new = {found.arguments[0].number for found in self._found if found.name == "new"}
+        start = next((step for step in range(experience.steps) if step not in new), 0)
+        for end in _ends(experience, start):
+            if not self._possible(TRY_HARD, ("perpendicular", "planar"), "-c", f"horizon={end}"):
+                return  # later ones are larger
+
+    def _possible(self, conflicts: int, files: Iterable[str], *options: str) -> bool:
+        """Rule out the dstates that are in no answer of the theory with these parts; whether
+        that was settled within so many conflicts."""
+        control = self._grounded("phases/topomap", *files, arguments=[*BRAVE, *options])
+        unseen, settled = self._unseen(control, conflicts, ("at", 3))
+        if settled:
+            for atom in unseen:
+                self._know("out", *atom.arguments)
+        return settled
+
+    def lines(self, planarity: Planarity | None = None) -> None:
+        # With another configuration it may be long before there is a first map at all.
+        options = [*BRAVE, "--configuration=handy"]
+        if planarity:
+            options.append("--sat-prepro=no")  # it takes long, and the search then does not
+        control = self._grounded("phases/lines", arguments=options)
+        if planarity:
+            control.register_propagator(planarity)
+        unseen, settled = self._unseen(control, TRY_HARD, ("same", 3), ("new", 1))
+        for atom in unseen:
+            if settled:
+                self._know({"same": "apart", "new": "old"}[atom.name], *atom.arguments)
+            elif atom.name == "same":
+                self._know("rare", *atom.arguments)
+            else:
+                self._know("rare", *atom.arguments * 2, Number(0))
+
+    def _unseen(
+        self, control: clingo.Control, conflicts: int, *asked: tuple[str, int]
+    ) -> tuple[list[Symbol], bool]:
+        """The atoms of these predicates that are in no answer, so far as answers were found
+        within so many conflicts; and whether all were. If none was, there is nothing to tell."""
+        atoms = control.symbolic_atoms
+        unseen = {atom.symbol for name in asked for atom in atoms.by_signature(*name)}
+        _limit(control, conflicts)
+        with control.solve(yield_=True) as models:
+            for model in models:
+                self._heed(control)
+                unseen.difference_update(model.symbols(shown=True))
+            settled, some = bool(models.get().exhausted), bool(models.get().satisfiable)
+        return sorted(unseen) if settled or some else [], settled
+
+
+def _limit(control: clingo.Control, conflicts: int) -> None:
+    control.configuration.solve.solve_limit = str(conflicts)  # type: ignore[union-attr]
+
+
+def _ends(experience: Experience, last: int) -> Iterator[int]:
+    """Steps after this one, some way apart, and the last one."""
+    for step in range(experience.steps):
+        if step >= last + STRIDE:
+            yield step
+            last = step
+    yield experience.steps

@@ -1,0 +1,1 @@
+"""Worlds to explore, and the instances that explorations of them give."""

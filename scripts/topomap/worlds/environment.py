@@ -1,0 +1,167 @@
+"""Worlds to explore: grids, tori, cylinders, mazes, and lattices of hexagons or triangles.
+
+A world is a map whose places count their slots from one common direction, so that a
+slot is a compass direction (slot 0 is north on a grid).
+"""
+
+import math
+import random
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, replace
+from typing import Any
+
+import clingo
+
+from topomap.model.topology import Gateway, Place, TopologicalMap, label
+from topomap.runtime import nx
+from topomap.runtime.errors import InputError
+
+NORTH, EAST, SOUTH, WEST = range(4)
+MOVES = {NORTH: (-1, 0), EAST: (0, 1), SOUTH: (1, 0), WEST: (0, -1)}
+
+
+@dataclass(frozen=True)
+class Environment:
+    """A world, what it is called, and how it was made.
+
+    ``call`` is the part of a ``topomap generate`` call that makes it; ``shape`` its
+    rows and columns, where a route may count on them; ``notes`` go into headers.
+    """
+
+    name: str
+    call: tuple[str, ...]
+    map: TopologicalMap
+    shape: tuple[int, int] | None = None
+    notes: tuple[str, ...] = ()
+
+    def place(self, text: str) -> Place:
+        """The place with this label. Raises InputError if there is none."""
+        for place in self.map.stars:
+            if label(place) == text:
+                return place
+        raise InputError(f"{self.name}: there is no place {text!r}")
+
+    def signed(self, rate: float, seed: int) -> "Environment":
+        """The same world with ``round(rate * n)`` of its n places carrying a sign,
+        a landmark that is the place's own name; drawn from the sorted places."""
+        places = sorted(self.map.stars)
+        drawn = random.Random(seed).sample(places, round(rate * len(places)))
+        landmarks = {place: frozenset((_term(place),)) for place in drawn}
+        return replace(self, map=replace(self.map, landmarks=landmarks))
+
+
+def plain(number: float) -> str:
+    """A number as the command line takes it, exactly."""
+    return str(int(number)) if number == int(number) else repr(number)
+
+
+def _term(place: Place) -> str:
+    """A place as a ground term: a tuple of numbers, or a string."""
+    if isinstance(place, tuple):
+        return str(clingo.Tuple_([clingo.Number(number) for number in place]))
+    return str(clingo.String(str(place)))
+
+
+def world(slots: int, links: Mapping[Gateway, Gateway]) -> TopologicalMap:
+    """The map in which every gateway is linked, places in order."""
+    if not links:
+        raise InputError("an environment needs a way between two places")
+    stars: dict[Place, set[int]] = {place: set() for place in sorted({p for p, _ in links})}
+    for place, slot in links:
+        stars[place].add(slot)
+    return TopologicalMap(slots, {place: frozenset(star) for place, star in stars.items()}, links)
+
+
+def grid(rows: int, columns: int, kind: str = "grid") -> Environment:
+    """A grid of places (row, column), four slots, slot 0 north. On a ``cylinder`` each
+    row is a ring, on a ``torus`` each column too."""
+    links: dict[Gateway, Gateway] = {}
+    for row in range(rows):
+        for column in range(columns):
+            for slot in EAST, SOUTH:
+                down, right = MOVES[slot]
+                there = row + down, column + right
+                if kind == "torus":
+                    there = there[0] % rows, there[1]
+                if kind in ("torus", "cylinder"):
+                    there = there[0], there[1] % columns
+                if there[0] < rows and there[1] < columns:
+                    _link(links, ((row, column), slot), (there, (slot + 2) % 4))
+    call = kind, str(rows), str(columns)
+    return Environment(f"{kind}-{rows}x{columns}", call, world(4, links), (rows, columns))
+
+
+def maze(rows: int, columns: int, thin: float, seed: int) -> Environment:
+    """A connected grid thinned with a seed: ``round(thin * n)`` of its n ways are taken
+    away in random order, those excepted on which the connection depends."""
+    links = dict(grid(rows, columns).map.links)
+    ways = world(4, links).edges()
+    graph: nx.MultiGraph[Place] = nx.MultiGraph((a[0], b[0], a) for a, b in ways)
+    spare = round(thin * len(ways))
+    for a, b in random.Random(seed).sample(ways, len(ways)):
+        if spare and not _is_bridge(graph, a, b):
+            graph.remove_edge(a[0], b[0], a)
+            del links[a], links[b]
+            spare -= 1
+    call = "maze", str(rows), str(columns), "--thin", plain(thin)
+    name = f"maze-{rows}x{columns}-thin{100 * thin:g}"
+    return Environment(name, call, world(4, links), (rows, columns))
+
+
+def _is_bridge(graph: "nx.MultiGraph[Any]", a: Gateway, b: Gateway) -> bool:
+    graph.remove_edge(a[0], b[0], a)
+    bridge = not nx.has_path(graph, a[0], b[0])
+    graph.add_edge(a[0], b[0], a)
+    return bridge
+
+
+def lattice(kind: str, rows: int, columns: int) -> Environment:
+    """``hexagons``: the corners of rows x columns hexagons, three ways a place;
+    ``triangles``: a triangular lattice, up to six. Six slots, 60 degrees apart, slot 0
+    at a bearing of 30 degrees."""
+    make = nx.hexagonal_lattice_graph if kind == "hexagons" else nx.triangular_lattice_graph
+    graph: nx.Graph[Any] = make(rows, columns)
+    positions = nx.get_node_attributes(graph, "pos")
+    ways = sorted(tuple(sorted(way)) for way in graph.edges())
+
+    def bearing(here: Place, there: Place) -> float:
+        return flat_bearing(positions[here], positions[there])
+
+    call = kind, str(rows), str(columns)
+    return Environment(f"{kind}-{rows}x{columns}", call, by_bearing(ways, bearing, 6, 30))
+
+
+def flat_bearing(here: tuple[float, float], there: tuple[float, float]) -> float:
+    """Degrees clockwise of north from a point to another, x east and y north."""
+    return math.degrees(math.atan2(there[0] - here[0], there[1] - here[1]))
+
+
+def by_bearing(
+    ways: Iterable[tuple[Place, Place]],
+    bearing: Callable[[Place, Place], float],
+    slots: int,
+    north: float,
+) -> TopologicalMap:
+    """The world of straight ways: each leaves by the slot nearest to its bearing, and
+    arrives by the opposite one; slot 0 is at ``north`` degrees clockwise of north.
+    Raises InputError naming the place where two ways fall into one slot."""
+    links: dict[Gateway, Gateway] = {}
+    for here, there in ways:
+        slot = math.floor((bearing(here, there) - north) * slots / 360 + 0.5) % slots
+        ends = (here, slot), (there, (slot + slots // 2) % slots)
+        for end, other in (ends, ends[::-1]):
+            if end in links:
+                first, second = links[end][0], other[0]
+                hint = "another --slots or --north may part them"
+                if first == second:
+                    hint = "both are taken to be straight, so nothing parts them"
+                raise InputError(
+                    f"place {label(end[0])}: the ways to {label(first)} and {label(second)} "
+                    f"fall into one slot, {end[1]} of {slots}; {hint}"
+                )
+        _link(links, *ends)
+    return world(slots, links)
+
+
+def _link(links: dict[Gateway, Gateway], a: Gateway, b: Gateway) -> None:
+    links[a], links[b] = b, a

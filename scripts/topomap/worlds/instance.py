@@ -1,0 +1,125 @@
+"""Instances: one record from which name, header and facts come.
+
+The same record gives the same bytes.
+"""
+
+import re
+import shlex
+import zlib
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+from topomap.model.experience import DState, Experience, explore
+from topomap.model.topology import Place, label
+from topomap.runtime.errors import InputError
+from topomap.worlds.environment import Environment, plain
+from topomap.worlds.route import checked, letters, snake, tour, walk
+
+
+@dataclass(frozen=True)
+class Instance:
+    """An exploration of an environment: its name, how it was made, what was seen, and
+    the true hypothesis."""
+
+    name: str
+    header: tuple[str, ...]
+    experience: Experience
+    truth: tuple[DState, ...]
+
+    def text(self) -> str:
+        """The instance file."""
+        header = (" ".join(line.split()) for line in self.header)
+        return "".join(f"% {line}\n" for line in header) + "\n" + self.experience.facts()
+
+
+def instance(
+    environment: Environment,
+    route: str,
+    *,
+    steps: int | None = None,
+    start: str | None = None,
+    facing: int | None = None,
+    signs: float = 0.0,
+    seed: int | None = None,
+    name: str | None = None,
+) -> Instance:
+    """Explore an environment.
+
+    ``route`` is ``snake``, ``walk``, ``tour``, or a list of directions; ``steps`` cuts
+    it; ``start`` names the first place (default: the smallest); ``facing`` is the slot
+    of the gateway stood at first (default: the one first left by); ``signs`` is the
+    share of places that carry a sign. Raises InputError on what cannot be walked.
+    """
+    if signs:
+        environment = environment.signed(signs, seed or 0)
+    world = environment.map
+    first: Place = environment.place(start) if start is not None else min(world.stars)
+    slots: Iterable[int]
+    if route == "snake":
+        slots = snake(environment)
+    elif route == "tour":
+        slots = tour(world, first)
+    elif route == "walk":
+        slots = walk(world, first, seed or 0)
+    else:
+        slots = letters(route, world.slots)
+    taken = checked(world, first, slots, steps)
+    if facing is None:
+        facing = taken[0] if taken else min(world.stars[first])
+    elif facing not in world.stars[first]:
+        raise InputError(f"{environment.name}: place {label(first)} has no gateway {facing}")
+
+    call = ["topomap", "generate", *environment.call, "--route", route]
+    parts = [_word(environment.name), _part(route, len(taken), steps)]
+    if steps is not None:
+        call += ["--steps", str(steps)]
+    if start is not None:
+        call += ["--start", start]
+        parts += ["from" + _word(start)]
+    if facing != (taken[0] if taken else None):
+        call += ["--facing", str(facing)]
+        parts += [f"facing{facing}"]
+    if signs:
+        call += ["--signs", plain(signs)]
+        parts += [f"signs{100 * signs:g}"]
+    if seed is not None:
+        call += ["--seed", str(seed)]
+        parts += [f"seed{seed}"]
+    if name is not None:
+        if not re.fullmatch(r"[\w+][\w.+-]*", name):
+            raise InputError(f"name {name!r}: letters, digits and _ . + - only")
+        call += ["--name", name]
+    title = name or "-".join(parts)
+
+    header = [
+        title,
+        f"environment: {environment.name} (places {len(world.stars)}, "
+        f"ways {len(world.links) // 2}, slots {world.slots})",
+        *environment.notes,
+        f"exploration: {route} from place {label(first)} (steps {len(taken)})",
+    ]
+    if signs:
+        header.append(
+            f"signs: {100 * signs:g} % of the places "
+            f"({len(environment.map.landmarks)} of {len(world.stars)}), seed {seed or 0}"
+        )
+    fault = world.path_axiom_fault()
+    if fault:
+        header.append(f"the environment's own map breaks the path axiom: {fault}")
+    header.append("made by: " + shlex.join(call))
+    return Instance(title, tuple(header), *explore(world, (first, facing), taken))
+
+
+def _part(route: str, taken: int, steps: int | None) -> str:
+    """A route's part of an instance's name."""
+    if route in ("tour", "walk"):
+        return f"{route}{taken}"
+    word = _word(route)
+    if len(word) > 40:
+        word = f"{word[:31]}-{zlib.crc32(route.encode()):08x}"
+    return word if steps is None else f"{word}{taken}"
+
+
+def _word(text: str) -> str:
+    """A text as a part of a file's name."""
+    return re.sub(r"[^\w.]+", "-", text).strip("-.")
