@@ -32,7 +32,8 @@ from topomap.model.experience import (
     slots_fault,
 )
 from topomap.model.found import Found, steps_json
-from topomap.questions.explore import LIMITS, plan, standing
+from topomap.questions.explore import LIMITS, plan
+from topomap.questions.standings import standing
 from topomap.runtime import formats
 from topomap.runtime.errors import InputError, of_file, say
 from topomap.runtime.limits import LARGEST

@@ -17,7 +17,7 @@ from topomap.model.found import Found
 from topomap.model.query import Query
 from topomap.model.topology import Gateway, Place, TopologicalMap
 from topomap.questions import explore
-from topomap.questions.explore import Prediction
+from topomap.questions.standings import Prediction, predict, standing
 from topomap.runtime import nx
 from topomap.runtime.errors import InputError
 from topomap.runtime.watch import Attempt, Watch
@@ -175,7 +175,7 @@ def _go_on(robot: Robot, maps: Sequence[Found], watch: Watch, most: int, marker:
     if len(robot.route) == most:
         return "steps"
     experience = robot.experience()
-    standings = [explore.standing(experience, one.at) for one in maps]
+    standings = [standing(experience, one.at) for one in maps]
     carried = marker and not robot.drops
     slots = robot.world.slots
     plan = explore.plan(slots, standings, watch, proofs=False)
@@ -185,7 +185,7 @@ def _go_on(robot: Robot, maps: Sequence[Found], watch: Watch, most: int, marker:
         return plan.kind
     if not plan.turns:
         return "a walk was not found" if plan.fault in explore.LIMITS else str(plan.fault)
-    walks = [explore.predict(one, plan.turns, plan.drop) for one in standings]
+    walks = [predict(one, plan.turns, plan.drop) for one in standings]
     for number, turn in enumerate(plan.turns):
         if len(robot.route) == most or turn not in robot.world.view(robot.dstate):
             break  # (in the second case another map is true, and is told from these)
