@@ -21,6 +21,7 @@ import topomap.drawing.layout
 from conftest import ROOT, TRIED, lacking, run
 from topomap.documents import maps
 from topomap.documents.answers import map_json
+from topomap.documents.verdicts import verdicts
 from topomap.drawing.scenes import Scene
 from topomap.exchange import exports, imports
 from topomap.model.experience import Experience, explore, read
@@ -83,9 +84,9 @@ def agrees(tmp_path, seen, scene):
         assert entry == json.loads(json.dumps(map_json(scene.world, scene.at)))
         assert document["slots"] == seen.slots
         assert document["instance"] == scene.name
-    (verdict,) = maps.verdicts(seen, [maps.document("made", document)], [], None)
+    (verdict,) = verdicts(seen, [maps.document("made", document)], [], None)
     original = json.loads(json.dumps({"maps": [map_json(scene.world, scene.at)]}))
-    assert [verdict] == list(maps.verdicts(seen, [maps.document("made", original)], [], None))
+    assert [verdict] == list(verdicts(seen, [maps.document("made", original)], [], None))
     assert not verdict.short
     return verdict.sound
 

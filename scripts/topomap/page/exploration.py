@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 from topomap.documents import maps
+from topomap.documents.beginnings import beginning
 from topomap.drawing import scenes, shapes
 from topomap.drawing.ready import ready
 from topomap.drawing.scenes import MOST_PLACES, Scene
@@ -36,10 +37,7 @@ def given_maps(file: str, path: str, whole: Experience, query: Query) -> list[Sc
             where = f"{document.where}: map {place}"
             if entry.get("misread"):
                 raise InputError(f"{where}: it disbelieves what was seen; the page is of all of it")
-            steps = len(entry["at"]) - 1
-            if steps not in (whole.steps, cut.steps):
-                raise InputError(f"{where}: {steps} steps, the instance has {cut.steps}")
-            at = maps.hypothesis(where, entry["at"], whole, demands)[: cut.steps + 1]
+            at = beginning(where, entry["at"], whole, cut, demands)
             rest = path, number, many, document.kind
             made.append(Scene(cut.map_of(at), at, *rest, whole=document.whole))
     if len({scene.at for scene in made}) < len(made):
