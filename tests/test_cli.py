@@ -319,6 +319,39 @@ def test_bad_usage_is_one_line(inside, arguments):
     assert done.stderr.startswith("topomap")
 
 
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["sovle", GRID], "topomap: no such command: 'sovle' (did you mean solve? see"),
+        (["solve", GRID, "--optimall"], "topomap solve: unrecognized arguments: --optimall (see"),
+    ],
+)
+def test_bad_usage_says_what_may_be_meant(inside, words, said):
+    done = inside(*words)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert done.stderr.startswith(said)
+
+
+def test_an_input_is_not_overwritten(inside, tmp_path):
+    log, other = tmp_path / "log.lp", tmp_path / "other.lp"
+    text = (ROOT / GRID).read_text()
+    log.write_text(text)
+    other.symlink_to(log)
+    for call in (
+        ["solve", log, "-o", log],
+        ["solve", log, "-o", other],
+        ["count", log, "-o", tmp_path / "." / "log.lp"],
+        ["solve", GRID, log, "--json", "-o", log],
+        ["check", GRID, log, "-o", log],
+        ["solve", GRID, "--truth", log, "-o", log],
+        ["report", log, "-o", log],
+    ):
+        done = inside(*call)
+        assert (done.returncode, done.stdout, done.stderr.count("\n")) == (2, "", 1), call
+        assert done.stderr.endswith(": it is to be read, and cannot be written, too\n")
+        assert log.read_text() == text
+
+
 @pytest.mark.parametrize("command", ["", "generate", "solve", "count", "table", "family"])
 def test_help_has_an_example(inside, command):
     done = inside(*command.split(), "--help")

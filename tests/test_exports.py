@@ -519,7 +519,7 @@ def test_parts_of_maps_that_are_there_already_are_refused(tmp_path, part):
 @pytest.mark.parametrize(
     ("change", "title"),
     [
-        (lambda made, _: None, "the only map, optimal"),
+        (lambda made, _: None, "the only optimal map"),
         (lambda made, _: made.update(complete=False), "map 1 of 1 found, optimal"),
         (lambda made, _: made.pop("complete"), "map 1 of 1 found, optimal"),
         (

@@ -100,7 +100,8 @@ def _scene(args: argparse.Namespace) -> tuple[Scene | None, int]:
     number = args.map or 1
     source = args.file if args.given is None else args.given
     if fault:
-        say(f"{args.file}: partial: {fault}")
+        none = "" if found else "no map found yet; "
+        say(f"{args.file}: {none}partial: {fault}")
     elif not found:
         say(f"{args.file}: no map is consistent with it")
     elif number > len(found):

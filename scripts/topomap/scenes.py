@@ -45,13 +45,18 @@ class Scene:
     def title(self) -> str:
         """What the map is, in two lines; an instance by the stem of its file."""
         world = self.world
+        kind = short(printable(self.kind), 60)
         which = f"map {self.number} of {self.many}"
         if not self.whole:
             which += " found"
         elif self.many == 1:
             which = "the only map"
-        if self.whole and not self.kind:
+        if self.whole and not kind:
             which += " given"
+        elif self.whole and self.many == 1:
+            which = _only(kind)
+        elif kind:
+            which += f", {kind}"
         genus = world.genus()
         sizes = [
             _number(len(world.stars), "place"),
@@ -60,8 +65,7 @@ class Scene:
             "planar" if genus == 0 else f"genus {genus}",
         ]
         name = short(PurePath(printable(self.name)).stem, 100)
-        kind = short(printable(self.kind), 60)
-        title = self.caption or f"{name}: {which}{f', {kind}' * bool(kind)}"
+        title = self.caption or f"{name}: {which}"
         return f"{title}\n{', '.join(sizes)}"
 
     @property
@@ -75,6 +79,11 @@ class Scene:
         for step, arrival in enumerate(self.at[1:], 1):
             found[self.world.links[arrival]].append(step)
         return found
+
+
+def _only(kind: str) -> str:
+    """The only map of a kind, in words."""
+    return f"the only map that is {kind}" if kind.startswith("best") else f"the only {kind} map"
 
 
 def _number(number: int, noun: str) -> str:

@@ -14,7 +14,8 @@ from topomap import files, formats, words
 from topomap.errors import BAD_INPUT, DONE, InputError, printable
 from topomap.experience import Experience, Facts, Fault
 
-MOST = 1000  # faults of a file that are told
+MOST = 1000  # faults of a file that are told in JSON
+SHOWN = 50  # the same in lines
 # So many turns back, each where there were other gateways, are strange, if there are no others:
 ALWAYS = 3  # in the whole exploration
 OFTEN = 4  # at places that look alike
@@ -77,8 +78,10 @@ def _lines(file: dict[str, Any]) -> Iterator[str]:
         counts += [words.number(file["views"], "kind of view", "kinds of views")]
         counts += [words.number(file["landmarks"], "landmark")]
         yield f"{name}: valid: {', '.join(counts)}"
-    for fault in file["faults"]:
+    for fault in file["faults"][:SHOWN]:
         yield Fault(fault["fault"], fault["line"], fault["step"]).of(name)
+    if (left := len(file["faults"]) - SHOWN) > 0:
+        yield f"{name}: and {words.number(left, 'more fault')}: see --json"
     if more := file["more_faults"]:
         yield f"{name}: there may be more faults: {more}"
     for warning in file["warnings"]:
