@@ -409,7 +409,10 @@ FOREIGN = {
     "odd slots": (spoilt(lambda g: g["graph"].update(slots=5)), "even number"),
     "slots of text": (spoilt(lambda g: g["graph"].update(slots="4")), "slots: not what"),
     "another genus": (spoilt(lambda g: g["graph"].update(genus=3)), "do not fit"),
-    "a gateway less": (spoilt(lambda g: g["nodes"][4]["gateways"].pop()), "not there, or two"),
+    "a gateway less": (
+        spoilt(lambda g: g["nodes"][4]["gateways"].pop()),
+        "has two links, or does not exist",
+    ),
     "no gateways": (spoilt(lambda g: g["nodes"][0].pop("gateways")), "not as solve --json"),
     "a link less": (spoilt(lambda g: g["edges"].pop()), "links that are not there"),
     "a link twice": (spoilt(lambda g: g["edges"].append({**g["edges"][0], "key": 99})), "or two"),

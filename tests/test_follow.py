@@ -222,7 +222,7 @@ BAD = [
     ("[1]", "a JSON object is wanted"),
     ('{"turn": 0}', "view is missing"),
     ('{"view": [0]}', "turn is missing"),
-    ('{"turn": 0, "view": [2]}', "step 2: the view lacks slot 0, the gateway stood at"),
+    ('{"turn": 0, "view": [2]}', "step 2: the view lacks slot 0, the gateway where the agent"),
     (
         '{"turn": 0, "view": [0], "sound": 1}',
         '"sound": not one of drop, landmarks, marker, pick, turn, view',

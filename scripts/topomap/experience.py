@@ -259,7 +259,7 @@ class Facts:
     def _checked(self, noisy: bool) -> Iterator[Fault]:
         """What is wrong with the facts together: with slots(K), then step by step."""
         if not self.slots and not self.views and not self.turns:
-            yield Fault("no facts in it", lacks=True)
+            yield Fault("there are no facts in it", lacks=True)
             return
         slots = None
         if len(self.slots) != 1:
@@ -299,7 +299,7 @@ class Facts:
         turns = self.turns.get(step, {})
         if turns and step == 0:
             line = min(turns.values())
-            yield Fault("a turn; steps with a turn begin at 1", line, step)
+            yield Fault("there is a turn, but step 1 is the first with a turn", line, step)
         if len(turns) > 1:
             yield Fault("more than one turn", sorted(turns.values())[1], step)
         for turn, line in turns.items():
@@ -321,7 +321,7 @@ class Facts:
         if not view and turned:
             yield Fault(f"no view{HINT}", self.steps.get(step), step, lacks=True)
         elif view and 0 not in view:
-            said = f"the view lacks slot 0, the gateway stood at{HINT}"
+            said = f"the view lacks slot 0, the gateway where the agent stands{HINT}"
             yield Fault(said, min(view.values()), step, lacks=True)
 
     def experience(self) -> Experience:
@@ -372,7 +372,7 @@ def marker_fault(marks: Container[str], out: bool) -> str | None:
     if "pick" in marks and not out:
         return "the marker is taken up, but lies nowhere"
     if "drop" in marks and out and "pick" not in marks:
-        return "the marker is put down, but is out already"
+        return "the marker is put down, but lies somewhere already"
     if "marker" in marks and not out and "drop" not in marks:
         return "the marker is seen, but lies nowhere"
     return None
@@ -435,7 +435,7 @@ def _fact(text: str) -> clingo.Symbol | str:
         return f"{_short(text)} is not a ground fact{stop}"
     # clingo computes, and wraps numbers that are too large, without a word.
     if str(symbol) != _SPACE.sub(r"\1", text):
-        return f"{_short(text)} is no plain fact, clingo has {cut_short(str(symbol))}"
+        return f"{_short(text)} is not a plain fact: clingo reads it as {cut_short(str(symbol))}"
     return symbol
 
 

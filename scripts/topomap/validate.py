@@ -55,9 +55,9 @@ def _judged(path: str) -> dict[str, Any]:
         told["landmarks"] = len(frozenset().union(*seen.landmarks))
     more = None
     if len(faults) > MOST:
-        more = f"only the first {MOST:,} are told"
+        more = f"only the first {MOST:,} are listed"
     elif facts.unread:
-        more = "what is missing can be told when every statement is a fact"
+        more = "what is missing can be told once every statement is a fact"
     return told | {
         "faults": [_json(fault, "fault") for fault in faults[:MOST]],
         "more_faults": more,
@@ -111,7 +111,7 @@ def strange(seen: Experience, facts: Facts) -> Iterator[Fault]:
         if len(steps) >= OFTEN and not any(seen.turns[step - 1] for step in steps):
             first = steps[0] - 1
             said = (
-                "places that look like the one after this step are never left but by the way back, "
+                "places that look like the one after this step are always left by the way back, "
                 f"in {len(steps)} visits, though they have other gateways; {straight}"
             )
             yield Fault(said, facts.steps[first], first)
