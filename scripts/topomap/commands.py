@@ -115,7 +115,7 @@ def _query(args: argparse.Namespace) -> Query:
 
 
 def _run(args: argparse.Namespace, *experiences: Experience) -> dict[str, Any]:
-    """What a run computes: a journal goes on with no other one."""
+    """What a run computes; a journal is resumed only by a run that computes the same."""
     from topomap import solver
 
     texts = [solver.digest(), *(experience.facts() for experience in experiences)]
@@ -164,8 +164,8 @@ def solve(args: argparse.Namespace) -> int:
 
 
 def _with_noise(args: argparse.Namespace) -> None:
-    """Settle the encoding. Raises InputError if misreadings are allowed and something is asked
-    for that does not go with them."""
+    """Choose the encoding. Raises InputError if misreadings are allowed and something is asked
+    for that cannot be combined with them."""
     if args.noise is None:
         args.encoding = args.encoding or "fast"
         return

@@ -70,9 +70,9 @@ class Experience:
         )
 
     def marker(self) -> tuple[tuple[int, bool] | None, ...]:
-        """Of each step, if the marker lies somewhere when it ends: after which step it was put
-        down, and whether it is seen. (Who takes it up sees it; taking up comes before putting
-        down.)"""
+        """For each step at whose end the marker lies somewhere: after which step it was put
+        down, and whether it is seen. (Whoever takes it up sees it. After one step it is taken up
+        before it is put down.)"""
         told: list[tuple[int, bool] | None] = []
         down = None
         for step in range(self.steps + 1):
@@ -83,8 +83,8 @@ class Experience:
         return tuple(told)
 
     def corrected(self, misread: Iterable[Misread]) -> "Experience":
-        """The experience with the other of what was misread: seen what was missed, and not what
-        was imagined."""
+        """The experience without its misreadings: what was missed is seen, and what was imagined
+        is not."""
         views, landmarks = list(self.views), list(self.landmarks)
         for step, what in misread:
             if isinstance(what, int):
@@ -94,8 +94,8 @@ class Experience:
         return replace(self, views=tuple(views), landmarks=tuple(landmarks))
 
     def misled(self) -> list[int]:
-        """The steps after which the agent stands at no gateway, or leaves by none, by what it
-        sees there."""
+        """The steps after which the agent stands at no gateway, or leaves by none, according to
+        what it sees there."""
         needs = [{0, turn} for turn in self.turns] + [{0}]
         return [step for step, need in enumerate(needs) if not need <= self.views[step]]
 
@@ -130,7 +130,7 @@ def explore(
     drops: Iterable[int] = (),
     picks: Iterable[int] = (),
 ) -> tuple[Experience, tuple[DState, ...]]:
-    """What is seen from ``start`` (the gateway stood at) along ``route``, the absolute
+    """What is seen from ``start`` (the gateway of the agent) along ``route``, the absolute
     slots by which places are left; and the true hypothesis, as ``at/3`` would name it.
 
     The marker is put down after those of the steps ``drops`` when it is in hand, and taken up
@@ -345,8 +345,8 @@ def slots_fault(slots: int) -> str | None:
 
 
 def misfit(fact: clingo.Symbol, forms: Mapping[str, str] = SIGNATURES) -> str | None:
-    """Why a fact is none of an instance: not of one of the ``forms``, by name, or with another
-    term where a number is wanted."""
+    """Why a fact does not belong in an instance: it has none of the ``forms``, which are given
+    by name, or it has another term where a number is wanted."""
     name, arguments = fact.name, fact.arguments
     text = cut_short(str(fact))
     known = {name: form.count(",") + 1 for name, form in forms.items()}
@@ -367,8 +367,8 @@ def misfit(fact: clingo.Symbol, forms: Mapping[str, str] = SIGNATURES) -> str | 
 
 
 def marker_fault(marks: Container[str], out: bool) -> str | None:
-    """What cannot be of what is done with the marker after a step; ``out`` tells whether it lies
-    somewhere before that."""
+    """What is impossible in what is done with the marker after a step; ``out`` tells whether it
+    lies somewhere before that."""
     if "pick" in marks and not out:
         return "the marker is taken up, but lies nowhere"
     if "drop" in marks and out and "pick" not in marks:
@@ -396,8 +396,8 @@ _BRACKET = re.compile(rf"{_STRING}|[(|)]", re.DOTALL)
 
 def ground_facts(text: str, line: int = 1) -> Iterator[tuple[int, clingo.Symbol | str]]:
     """The ground facts of a text, each with the line it begins in; the first line is ``line``.
-    In the place of a statement that is no ground fact stands, in words, what it is. A script is
-    not read, nor what comes after it: its text is not of statements."""
+    In the place of a statement that is not a ground fact there is a text that says what it is.
+    A script is not read, nor is what comes after it, because its text has no statements."""
     fact: list[str] = []
     begins = line
     position = depth = 0

@@ -25,10 +25,10 @@ MOST_PLACES = 1000  # in a picture
 class Scene:
     """A map, and the dstate after each step of the route in it, from step 0 (or none).
 
-    ``name`` says where it is from; ``number`` of ``many`` such maps, which are all if ``whole``;
-    ``kind`` what they are; if it is not known, they are all that were given. ``caption`` is a
-    title instead of these. ``marker`` says where the marker was put down, seen and taken up, if
-    it was.
+    ``name`` says where it is from. It is map ``number`` of ``many``, which are all if
+    ``whole``. ``kind`` says what these maps are; if it is empty, that is not known, and they are
+    those that were given. ``caption`` is a title instead of these. ``marker`` says where the marker
+    was put down, seen and taken up, if it was.
     """
 
     world: TopologicalMap
@@ -193,8 +193,8 @@ def of_document(document: maps.Document) -> list[Scene]:
 
 
 def world_of(slots: int, entry: dict[str, Any], where: str) -> TopologicalMap:
-    """The map that ``places`` and ``links`` describe. Raises InputError if it is none: if it is
-    in parts, a gateway has two links, or is not there."""
+    """The map that ``places`` and ``links`` describe. Raises InputError if that is no map: if
+    it is not connected, or a gateway has two links, or does not exist."""
     try:
         stars = {
             int(place["place"]): frozenset(int(slot) for slot in place["gateways"])

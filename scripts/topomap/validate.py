@@ -1,7 +1,7 @@
 """``topomap validate``: all that is wrong with instances, and what looks like a mistake.
 
 Nothing is solved. The faults are those for which every command refuses an instance. Warnings are
-of instances that can be meant as they are, but seldom are.
+about instances that may be meant as they are, but seldom are.
 """
 
 import argparse
@@ -15,7 +15,7 @@ from topomap.errors import BAD_INPUT, DONE, InputError, printable
 from topomap.experience import Experience, Facts, Fault
 
 MOST = 1000  # faults of a file that are told
-# So many turns back, each where there were other gateways, are strange, if there are no others:
+# So many turns back, each at a place with other gateways, are strange if all turns are back:
 ALWAYS = 3  # in the whole exploration
 OFTEN = 4  # at places that look alike
 START = (
@@ -118,8 +118,8 @@ def strange(seen: Experience, facts: Facts) -> Iterator[Fault]:
 
 
 def _kind(seen: Experience, step: int) -> Any:
-    """What a place looks like, from whichever gateway it is come to: its landmarks, and how far
-    its gateways lie apart. Their order is left out, which makes warnings fewer, and none wrong."""
+    """What a place looks like, at whichever gateway the agent arrives: its landmarks, and how far
+    its gateways lie apart. Their order is left out: warnings are then fewer, but none is wrong."""
     view = sorted(seen.views[step])
     apart = [after - before for before, after in pairwise(view)]
     return tuple(sorted([*apart, seen.slots - sum(apart)])), seen.landmarks[step]
