@@ -221,7 +221,7 @@ BAD = {
     "slots(4). view(0,0). view(1,0).": "step 1: it has no turn",
     "slots(4). view(0,0). turn(1,0).": "step 1: no view",
     "slots(4). view(0,0). turn(1,1). view(1,0).": "step 1: turn 1: no gateway there",
-    "slots(4). view(0,0). turn(0,0).": "step 0: a turn",
+    "slots(4). view(0,0). turn(0,0).": "step 0: there is a turn",
     "slots(4). view(0,0). turn(2,0). view(2,0).": "step 1: no turn",
     "slots(4). view(0,0;0,1). turn(1,0;1,1). view(1,0).": "not a ground fact",
     "slots(4). view(0,0). view(0,1). turn(1,0). turn(1,1). view(1,0).": "step 1: more than one",

@@ -31,7 +31,7 @@ INSTANCES = {
     "many signs": (f"{HEAD} view(0,{'-' * 100_001}1).", "not a plain fact"),
     "many slots": ("slots(1000000000). view(0,0).", "slots(1000000000): K must be"),
     "step -1": (HEAD + "turn(-1,0).", "step -1: steps are numbered from 0"),
-    "step 0": (HEAD + "turn(0,0).", "step 0: a turn"),
+    "step 0": (HEAD + "turn(0,0).", "step 0: there is a turn"),
     "step 10^9": (HEAD + "turn(1000000000,0). view(1000000000,0).", "step 1: no turn"),
     "overflow of slots": ("slots(99999999999). view(0,0).", "not a plain fact"),
     "overflow to a good one": ("slots(4294967300). view(0,0).", "not a plain fact"),
