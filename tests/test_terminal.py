@@ -599,7 +599,7 @@ def test_maps_of_clingo_are_not_shown_without_the_right_instance(inside, tmp_pat
     for call, fault in (
         ((file,), f"{file}: maps from clingo: the instance is wanted before them, "),
         ((PAPER, file), f"{file}: map 1: step "),
-        ((GRID, file, "--planar"), f"{file}: the maps are given: parts, bound, horizon"),
+        ((GRID, file, "--planar"), f"{file}: these are maps, so parts, bound and"),
         ((GRID, file, "--map", 5), f"{file}: it has 4 maps, there is no map 5"),
         ((file, file), f"{file}:1: the facts of an instance are wanted"),
         (("-", "-"), "-: standard input is the instance or the maps, not both"),

@@ -18,7 +18,8 @@ from topomap.vocabulary import DEMANDS, FORMS, OPTIMIZING, PARTS, PROPERTIES, PR
 
 STATUS = """\
 exit status: 0 done; 1 the answer is no (the table differs, no map, an unsound map);
-2 bad input or usage; 3 partial (a limit, a time-out, no memory left); 130 interrupted"""
+2 bad input or usage; 3 partial (a limit or time limit was reached, or memory ran out);
+130 interrupted"""
 
 
 class Parser(argparse.ArgumentParser):
@@ -172,13 +173,18 @@ def _add_generate(group: Any) -> None:
         required=True,
         metavar="ROUTE",
         help="snake; walk (random); tour (over every way); compass letters such as ESSENN "
-        "(4 slots; with 8, apart by commas: N,NE,E); or absolute slots: 0,3,1",
+        "(4 slots; with 8, separated by commas: N,NE,E); or absolute slots: 0,3,1",
     )
     add(
         "--steps", type=_number(int, 0, MOST_STEPS), metavar="N", help="cut the route after N steps"
     )
-    _add_start(add, "the one first left by")
-    add("--seed", type=_number(int, 0), metavar="N", help="for walk, signs and maze (default: 0)")
+    _add_start(add, "the one by which the route leaves")
+    add(
+        "--seed",
+        type=_number(int, 0),
+        metavar="N",
+        help="seed for walk, signs and maze (default: 0)",
+    )
     add("--name", help="name of the instance (default: made from the arguments)")
     add("--truth", metavar="FILE", help="also write the true hypothesis, for solve --truth")
     add("--json", action="store_true", help="print a summary as JSON")
@@ -191,13 +197,13 @@ def _add_start(add: Any, facing: str) -> None:
     add(
         "--start",
         metavar="PLACE",
-        help="first place, such as 0,2 (default: the smallest)",
+        help="place to start at, such as 0,2 (default: the smallest)",
     )
     add(
         "--facing",
         type=_number(int, 0),
         metavar="SLOT",
-        help=f"gateway stood at first (default: {facing})",
+        help=f"gateway to stand at first (default: {facing})",
     )
     add(
         "--signs",
@@ -216,7 +222,7 @@ def _add_environments(command: Parser, common: Parser, rest: str) -> Any:
         ("grid", "a grid of places, four slots, slot 0 north"),
         ("cylinder", "a grid whose rows are rings"),
         ("torus", "a grid whose rows and columns are rings"),
-        ("maze", "a connected grid thinned with the seed"),
+        ("maze", "a grid from which ways are taken away at random; it stays connected"),
         ("hexagons", "the corners of a sheet of hexagons, six slots"),
         ("triangles", "a triangular lattice, six slots"),
     ):
@@ -235,8 +241,8 @@ def _add_environments(command: Parser, common: Parser, rest: str) -> Any:
                 help="share of the ways to take away (default: %(default)s)",
             )
     help = (
-        "a street or corridor network with coordinates: ways are straight lines between "
-        "their ends, and two-way; loops are left out"
+        "a street or corridor network with coordinates: each way is a straight line between "
+        "its ends, and can be gone both ways; loops are left out"
     )
     example = f"{name} network city.graphml --slots 4 --north 29 {rest}"
     sub = _environment(kinds, "network", common, help, example)
@@ -295,8 +301,8 @@ def _add_validate(group: Any) -> None:
         group,
         "validate",
         "validate:validate",
-        "tell all that is wrong with instances, and what in them looks like a mistake, without "
-        "solving anything; status 2 if one of them has a fault (a warning is none)",
+        "report all that is wrong with instances, and what looks like a mistake, without solving "
+        "anything; the status is 2 if one of them has a fault (a warning is not a fault)",
         """\
   topomap validate walk.lp
   topomap validate instances/*.lp --json
@@ -331,7 +337,7 @@ def _add_solve(group: Any) -> None:
         "--by",
         choices=("clingo", "search"),
         default="clingo",
-        help="which of the two ways gives the answer (default: %(default)s)",
+        help="how to find the maps: clingo, or the search in Python (default: %(default)s)",
     )
     _add_query(command, PARTS)
     _add_crew(command, "; not with --optimal, --minimal or --genus")
@@ -342,8 +348,8 @@ def _add_solve(group: Any) -> None:
         "--noise",
         type=_number(int, 0),
         metavar="K",
-        help="allow up to K wrong views, as few as can be: gateways and landmarks missed or "
-        "imagined; by the plain encoding",
+        help="allow up to K views to be wrong, as few as possible: gateways and landmarks were "
+        "missed or imagined; this uses the plain encoding",
     )
 
 
@@ -351,8 +357,8 @@ def _add_optimal(command: Parser) -> None:
     command.add_argument(
         "--optimal",
         action="store_true",
-        help="closed maps with consistent boundaries, fewest paths and places; "
-        "if there is none, the best so far: pending gateways allowed",
+        help="closed maps with consistent boundaries, the fewest paths, then the fewest places; "
+        "if there is none, the best so far, in which gateways may be pending",
     )
 
 
@@ -361,8 +367,8 @@ def _add_encoding(command: Parser) -> None:
         "--encoding",
         choices=FORMS,
         default="fast",
-        help="which rules clingo is given: encodings/fast/, or those that state the theory "
-        "(default: fast)",
+        help="which rules clingo gets: those of encodings/fast/, or the plain ones, which state "
+        "the theory (default: fast)",
     )
 
 
@@ -370,7 +376,7 @@ def _add_resume(command: Parser) -> None:
     command.add_argument(
         "--resume",
         action="store_true",
-        help="go on where the last run with this output file was cut; it left FILE.part",
+        help="go on where the last run with this output file was cut short; it left FILE.part",
     )
 
 
@@ -385,9 +391,9 @@ def _add_crew(command: Parser, but: str = "") -> None:
     group.add_argument(
         "--dask",
         metavar="ADDRESS",
-        help="share it out among the workers of a running Dask cluster, such as "
-        "tcp://127.0.0.1:8786; they need this version of topomap (and here the extra dask: "
-        "pip install '.[dask]' in its folder)",
+        help="share the work out among the workers of a running Dask cluster, such as "
+        "tcp://127.0.0.1:8786; they need the same version of topomap, and this computer needs the "
+        "extra dask: pip install '.[dask]' in the folder of topomap",
     )
 
 
@@ -396,8 +402,8 @@ def _add_ask(group: Any) -> None:
         group,
         "ask",
         "ask:ask",
-        "tell of each statement whether it holds in all maps that are consistent with an "
-        "exploration, in some or in none, with maps that show it",
+        "say of each statement whether it holds in all maps that are consistent with an "
+        "exploration, in some or in none, with maps as witnesses",
         f"""\
   topomap ask instances/grid-4x4-snake.lp "same(3,12)" "places < 12" --planar --closed
   topomap ask instances/grid-3x3-snake.lp "linked(3,2,12,0)" "not planar" --optimal --json
@@ -416,9 +422,9 @@ def _add_explain(group: Any) -> None:
         group,
         "explain",
         "explain:explain",
-        "tell why a statement about the maps is impossible, or certain, or why there is no map: "
-        "reasons none of which can be spared. (Of all maps, not of the optimal ones: that "
-        "another map is better is no reason of this kind)",
+        "say why a statement about the maps is impossible, or certain, or why there is no map, by "
+        "reasons each of which is needed. (The statement is about all maps, not only the optimal "
+        "ones: that another map is better is not such a reason)",
         f"""\
   topomap explain instances/grid-3x3-snake.lp "same(3,12)"
   topomap explain instances/grid-4x4-snake.lp "not same(0,30)" --planar --bound 16
@@ -453,8 +459,8 @@ def _add_check(group: Any) -> None:
         group,
         "check",
         "commands:check",
-        "check maps that anyone made, by encodings/check.lp and by a second checker "
-        "(a time limit ends it between two maps)",
+        "check maps, whoever made them, by encodings/check.lp and by a second checker "
+        "(a time limit ends the check between two maps)",
         """\
   topomap solve instances/grid-3x3-snake.lp --planar --json -o maps.json
   topomap check instances/grid-3x3-snake.lp maps.json --planar""",
@@ -463,9 +469,9 @@ def _add_check(group: Any) -> None:
     command.add_argument(
         "maps",
         metavar="MAPS.json",
-        help="from topomap solve --json or clingo --outf=2; a map needs at, [[T,P,S], ...], "
-        "and what else it has is verified; of all the maps are verified the parts, bound, "
-        "horizon, kind, cost and count, not whether they are all that there are",
+        help="from topomap solve --json or clingo --outf=2; a map needs the key at, "
+        "[[T,P,S], ...], and its other keys are verified; so are the parts, bound, horizon, kind, "
+        "cost and count of the file, but not that there are no other maps",
     )
     command.add_argument(
         "--truth", metavar="FILE", help="the real map (from generate --truth), for the key real"
@@ -474,7 +480,8 @@ def _add_check(group: Any) -> None:
         "--noise",
         type=_number(int, 0),
         metavar="K",
-        help="a map may disbelieve K views (its key misread), and no more than it says itself",
+        help="a map may disbelieve up to K views, named in its key misread, and no more than its "
+        "file allows",
     )
     _add_query(command, PROPERTIES, horizon=False)
 
@@ -484,7 +491,7 @@ def _add_search(group: Any) -> None:
         group,
         "search",
         "commands:search_tree",
-        "search the tree of an exploration, as the paper does, without clingo",
+        "search the tree of an exploration without clingo, as the paper does",
         """\
   topomap search instances/grid-4x4-snake.lp --planar --bound 16
   topomap search instances/grid-4x4-snake.lp --order depth
@@ -495,8 +502,8 @@ def _add_search(group: Any) -> None:
         "--order",
         choices=("breadth", "depth", "best"),
         default="breadth",
-        help="breadth: step by step, counts the whole tree; depth: the same in little memory; "
-        "best: by the optimality policy, until a closed map is found (default: %(default)s)",
+        help="breadth: count the whole tree step by step; depth: the same in little memory; best: "
+        "best map first, until a closed map is found (default: %(default)s)",
     )
     _add_query(command, PRUNING)
 
@@ -519,14 +526,15 @@ def _add_table(group: Any) -> None:
         group,
         "table",
         "commands:table",
-        "print the paper's Figure 4 beside ours, and write it as JSON",
+        "print the paper's Figure 4 beside our numbers, and write them as JSON",
         "  topomap table",
     )
     command.add_argument(
         "--jobs",
         type=_number(int, 1),
         metavar="N",
-        help="columns, or with --beyond processes, at a time (default: one a processor)",
+        help="how many columns, or with --beyond processes, at a time (default: one for each "
+        "processor)",
     )
     command.add_argument("--json", action="store_true", help="print JSON instead of the table")
     command.add_argument(
@@ -552,7 +560,8 @@ def _add_family(group: Any) -> None:
         group,
         "family",
         "commands:family",
-        "name the instances of a family file, and write the call of each where it changed",
+        "print the names of the instances of a family file, and write the arguments of each that "
+        "changed",
         "  topomap family instances/batch.txt -d build/instances",
     )
     command.set_defaults(parse=parse)
@@ -562,7 +571,7 @@ def _add_family(group: Any) -> None:
         "--directory",
         required=True,
         metavar="DIR",
-        help="folder for NAME.args; files of instances no longer listed go",
+        help="folder for NAME.args; files of instances that are no longer listed are removed",
     )
     command.add_argument("--json", action="store_true", help="print JSON")
 
@@ -573,18 +582,20 @@ def _add_scene(command: Parser) -> None:
     add(
         "file",
         metavar="INSTANCE|MAPS.json",
-        help="an instance, of which the optimal maps are shown, or the best so far, with what "
-        "is asked for below; or maps, from topomap solve --json",
+        help="an instance, of which an optimal map is shown, or one of the best so far, with the "
+        "options below; or a file of maps, from topomap solve --json",
     )
     add(
         "given",
         nargs="?",
         metavar="MAPS.json",
-        help="the maps of that instance to show instead, from clingo --outf=2 or topomap solve "
-        "--json (- is standard input)",
+        help="a file of maps of that instance, to be shown instead, from clingo --outf=2 or "
+        "topomap solve --json (- is standard input)",
     )
-    add("--map", type=_number(int, 1), metavar="N", help="the N-th of the maps (default: 1)")
-    _add_asked(command, PRUNING, limit="stop the search for maps after S seconds; then draw")
+    add("--map", type=_number(int, 1), metavar="N", help="take the N-th map (default: 1)")
+    _add_asked(
+        command, PRUNING, limit="stop the search for maps after S seconds, and take what was found"
+    )
 
 
 def _add_draw(group: Any) -> None:
@@ -609,9 +620,9 @@ def _add_report(group: Any) -> None:
         group,
         "report",
         "page:report",
-        "tell all about explorations in one page to be opened in a browser: the log, how many "
-        "hypotheses, what was refused, the best maps, and a replay step by step; what is not "
-        "counted or drawn within --timeout (default: 60) says so",
+        "write one page about explorations, to be opened in a browser: the log, how many "
+        "hypotheses there are, what was refused, the best maps, and a replay step by step; the "
+        "page marks what could not be counted or drawn within --timeout (default: 60)",
         """\
   topomap report instances/grid-3x3-snake.lp -o report.html
   topomap report instances/grid-4x4-snake.lp --bound 16 --timeout 120 -o report.html""",
@@ -623,12 +634,12 @@ def _add_report(group: Any) -> None:
         type=_number(int, 0),
         default=6,
         metavar="N",
-        help="draw N of the best maps at most (default: %(default)s)",
+        help="draw at most N of the best maps (default: %(default)s)",
     )
     add(
         "--maps-from",
         metavar="MAPS.json",
-        help="tell of these maps instead of the best ones, from clingo --outf=2 or topomap solve "
+        help="show these maps instead of the best ones, from clingo --outf=2 or topomap solve "
         "--json (- is standard input)",
     )
     add("-o", "--output", metavar="FILE", help="file to write (default: stdout)")
@@ -645,7 +656,11 @@ def _add_figures(group: Any) -> None:
         "  topomap figures -d docs/figures\n  topomap figures figure1 figure5 -d .",
     )
     command.add_argument(
-        "figure", nargs="*", default=(), metavar="FIGURE", help="these only, as figure1"
+        "figure",
+        nargs="*",
+        default=(),
+        metavar="FIGURE",
+        help="draw only these figures, such as figure1",
     )
     command.add_argument(
         "-d", "--directory", required=True, metavar="DIR", help="folder for FIGURE.svg"
@@ -653,7 +668,7 @@ def _add_figures(group: Any) -> None:
     command.add_argument(
         "--instances",
         metavar="DIR",
-        help="where they are (default: those of topomap path instances)",
+        help="folder of the instances (default: that of topomap path instances)",
     )
 
 
@@ -663,7 +678,7 @@ def _add_simulate(group: Any) -> None:
         "simulate",
         "simulating:simulate",
         "let a robot explore an environment that it does not know, until it has one closed "
-        "optimal map, and hold that against the truth",
+        "optimal map, and compare this map with the real one",
         """\
   topomap simulate grid 3 3
   topomap simulate maze 4 4 --seed 2 --signs 0.3 --perpendicular
@@ -673,20 +688,20 @@ def _add_simulate(group: Any) -> None:
     common = Parser(add_help=False)
     add = common.add_argument
     _add_start(add, "the smallest")
-    add("--seed", type=_number(int, 0), metavar="N", help="for signs and maze (default: 0)")
+    add("--seed", type=_number(int, 0), metavar="N", help="seed for signs and maze (default: 0)")
     add(
         "--steps",
         type=_number(int, 0, MOST_STEPS),
         metavar="N",
-        help="walk N steps at most (default: 20 for each way)",
+        help="walk at most N steps (default: 20 for each way)",
     )
-    add("--marker", action="store_true", help="it carries a marker, and may put it down")
-    add("--instance", metavar="FILE", help="also write what it did and saw, as an instance")
+    add("--marker", action="store_true", help="the robot carries a marker, and may put it down")
+    add("--instance", metavar="FILE", help="also write what the robot did and saw, as an instance")
     _add_asked(common, PRUNING, horizon=False)
     add("--json", action="store_true", help="write JSON")
     add("-o", "--output", metavar="FILE", help="file to write (default: stdout)")
     kinds = _add_environments(command, common, "--signs 0.3")
-    help = "several of them, one a line of a file: the arguments of topomap simulate"
+    help = "several environments: each line of a file has the arguments of topomap simulate"
     listed = kinds.add_parser(
         "list",
         help=help,
@@ -707,7 +722,7 @@ def _add_show(group: Any) -> None:
         group,
         "show",
         "pictures:show",
-        "print a map in the lines of a terminal, then in words",
+        "print a map, drawn in the terminal and then described in words",
         """\
   topomap show instances/grid-4x4-snake.lp --perpendicular
   topomap show maps.json --map 3 | less -S
@@ -753,8 +768,8 @@ def _add_follow(group: Any) -> None:
         group,
         "follow",
         "following:follow",
-        "follow an exploration as it happens: after each step the number of hypotheses, the best "
-        "maps, what has become certain, and what to do next",
+        "follow an exploration as it happens, and print after each step how many hypotheses there "
+        "are, the best maps, what has become certain, and what to do next",
         """\
   topomap follow walk.lp --planar
   topomap follow instances/grid-3x3-snake.lp --no-wait --json
@@ -766,7 +781,7 @@ lines: the facts of a step, as generate writes them: turn(1,0). view(1,0). view(
   steps back. Facts that a line adds to the last step amend it.
 
 what is certain: new(T), the place where the agent is after step T was not visited before;
-  same(T,U) and linked(T,S,U,R) as topomap ask --help has them. It stays certain.""",
+  same(T,U) and linked(T,S,U,R) as in topomap ask --help. What is certain stays certain.""",
     )
     add = command.add_argument
     add(
@@ -774,31 +789,37 @@ what is certain: new(T), the place where the agent is after step T was not visit
         nargs="?",
         default="-",
         metavar="FILE",
-        help="a file that grows, followed until Ctrl-C (default: standard input, to its end)",
+        help="a file that grows, read until Ctrl-C (default: standard input, to its end)",
     )
     add(
         "--log",
         metavar="FILE",
-        help="with standard input: write each line there before it is answered; if it has lines, "
-        "go on after them",
+        help="with standard input: write each line to FILE before it is answered; if FILE has "
+        "lines already, go on after them",
     )
     add("--planar", action="store_true", help=PARTS["planar"])
     add("--bound", type=_number(int, 1), metavar="B", help="at most B places")
-    add("--marker", action="store_true", help="the agent carries a marker, for what to do next")
+    add(
+        "--marker",
+        action="store_true",
+        help="the agent carries a marker, which the next steps may use",
+    )
     add(
         "--count-limit",
         type=_number(int, 1),
         default=MOST_COUNTED,
         metavar="N",
-        help="of more hypotheses say only that they are more (default: %(default)s)",
+        help="if there are more than N hypotheses, say only that (default: %(default)s)",
     )
-    add("--timeout", type=_number(float, 0.001), metavar="S", help="at most S seconds a step")
+    add(
+        "--timeout", type=_number(float, 0.001), metavar="S", help="at most S seconds for each step"
+    )
     add(
         "--keep-going",
         action="store_true",
-        help="tell of lines with a fault, and pass over them (status 0)",
+        help="report lines with a fault, and go on with the next line (status 0)",
     )
-    add("--no-wait", dest="wait", action="store_false", help="end at the end of the file")
+    add("--no-wait", dest="wait", action="store_false", help="stop at the end of the file")
     add("--json", action="store_true", help="a line of JSON for each step")
 
 
@@ -807,9 +828,9 @@ def _add_explore(group: Any) -> None:
         group,
         "explore",
         "exploring:explore",
-        "say where to go next: the shortest further walk that tells the maps apart, or leaves the "
-        "fewest in the worst case; if there is none, to a pending gateway; or the proof that no "
-        "walk ever tells them",
+        "say where to go next: by the shortest further walk that tells the maps apart, or leaves "
+        "the fewest of them in the worst case; if there is no such walk, by one to a pending "
+        "gateway; or prove that no walk can ever tell the maps apart",
         """\
   topomap explore instances/grid-4x4-snake.lp --bound 16
   topomap generate grid 4 4 --route snake --truth truth.json -o grid.lp
@@ -824,21 +845,29 @@ def _add_explore(group: Any) -> None:
         "--among",
         action="append",
         metavar="MAPS",
-        help="the maps that may be the real one: optimal (the best so far, where nothing is "
-        "closed), closed, perpendicular (and closed), or a file of maps of this instance; more "
-        "than once for all of them (default: optimal)",
+        help="the maps that may be the real one: optimal (the best so far, if none is optimal), "
+        "closed, perpendicular (and closed), or a file of maps of this instance; can be given "
+        "several times (default: optimal)",
     )
-    add("--marker", action="store_true", help="the agent carries a marker, to be dropped once")
+    add(
+        "--marker",
+        action="store_true",
+        help="the agent carries a marker, which it may put down once",
+    )
     add(
         "--steps",
         type=_number(int, 1, 1000),
         default=LONGEST_WALK,
         metavar="N",
-        help="walks of at most N steps (default: %(default)s)",
+        help="look for walks of at most N steps (default: %(default)s)",
     )
-    add("--proof", metavar="FILE", help="write there why no walk tells maps apart, for --check")
+    add(
+        "--proof",
+        metavar="FILE",
+        help="write to FILE the proof that no walk tells maps apart, for --check",
+    )
     what = command.add_mutually_exclusive_group()
-    what.add_argument("--check", metavar="FILE", help="check the proofs that --proof wrote there")
+    what.add_argument("--check", metavar="FILE", help="check the proofs that --proof wrote to FILE")
     what.add_argument(
         "--facts", action="store_true", help="print the maps as facts for encodings/explore.lp"
     )

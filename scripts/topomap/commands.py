@@ -115,7 +115,7 @@ def _query(args: argparse.Namespace) -> Query:
 
 
 def _run(args: argparse.Namespace, *experiences: Experience) -> dict[str, Any]:
-    """What a run computes: a journal goes on with no other one."""
+    """What a run computes; a journal is resumed only by a run that computes the same."""
     from topomap import solver
 
     texts = [solver.digest(), *(experience.facts() for experience in experiences)]
@@ -164,8 +164,8 @@ def solve(args: argparse.Namespace) -> int:
 
 
 def _with_noise(args: argparse.Namespace) -> None:
-    """Settle the encoding. Raises InputError if misreadings are allowed and something is asked
-    for that does not go with them."""
+    """Choose the encoding. Raises InputError if misreadings are allowed and something is asked
+    for that cannot be combined with them."""
     if args.noise is None:
         args.encoding = args.encoding or "fast"
         return
@@ -287,7 +287,7 @@ def _crew(args: argparse.Namespace) -> Crew:
     """Those who do the work."""
     shared = (args.jobs or 1) > 1 or args.dask
     if shared and (getattr(args, "optimal", False) or _query(args).optimizes):
-        raise InputError("topomap solve: --jobs and --dask share out all maps, not the best ones")
+        raise InputError("topomap solve: --jobs and --dask are for all maps, not the best ones")
     return crew(args.jobs or 1, args.dask)
 
 
@@ -298,7 +298,7 @@ def _truth(file: str, experience: Experience, horizon: int | None) -> Topologica
 
     entries = [entry for document in maps.read(file, MOST_BYTES) for entry in document.maps]
     if len(entries) != 1:
-        raise InputError(f"{file}: {len(entries)} maps; the real map is one")
+        raise InputError(f"{file}: {len(entries)} maps, but the real map must be the only one")
     at = entries[0]["at"]
     if len(at) != experience.steps + 1:
         raise InputError(f"{file}: {len(at) - 1} steps, the instance has {experience.steps}")
@@ -352,7 +352,7 @@ def check(args: argparse.Namespace) -> int:
             line = f"{len(checked)} of {number} {noun} checked" if fault else f"{number} {noun}"
             line += f", {len(unsound) or 'none'}{' of these' * bool(fault)} unsound"
             if short:
-                line += f"; {short} of part of the {experience.steps} steps"
+                line += f"; {short} of them for only part of the {experience.steps} steps"
             out.write(line + (f"; partial: {fault}\n" if fault else "\n"))
     return exit_status(fault, not unsound)
 
@@ -552,7 +552,7 @@ def family(args: argparse.Namespace) -> int:
             raise InputError(f"{args.file}:{line}: {error}") from None
         if made.name in calls:
             raise InputError(
-                f"{args.file}:{line}: a second instance named {made.name}; --name can part them"
+                f"{args.file}:{line}: a second instance named {made.name}; give it another --name"
             )
         calls[made.name] = shlex.join(call) + "\n"
         if parsed.kind == "network":  # make sees by this line that the map was changed

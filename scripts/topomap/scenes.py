@@ -25,10 +25,10 @@ MOST_PLACES = 1000  # in a picture
 class Scene:
     """A map, and the dstate after each step of the route in it, from step 0 (or none).
 
-    ``name`` says where it is from; ``number`` of ``many`` such maps, which are all if ``whole``;
-    ``kind`` what they are; if it is not known, they are all that were given. ``caption`` is a
-    title instead of these. ``marker`` says where the marker was put down, seen and taken up, if
-    it was.
+    ``name`` says where it is from. It is map ``number`` of ``many``, which are all if
+    ``whole``. ``kind`` says what these maps are; if it is empty, that is not known, and they are
+    those that were given. ``caption`` is a title instead of these. ``marker`` says where the marker
+    was put down, seen and taken up, if it was.
     """
 
     world: TopologicalMap
@@ -101,7 +101,7 @@ def read(
     """
     if given is not None:
         if query != Query(frozenset()):
-            raise InputError(f"{given}: the maps are given: parts, bound, horizon are of none")
+            raise InputError(f"{given}: these are maps, so parts, bound and horizon cannot be used")
         if path == given == "-":
             raise InputError("-: standard input is the instance or the maps, not both")
         documents = maps.of_instance(maps.read(given), path)
@@ -113,7 +113,7 @@ def read(
     content = text(path, maps.MOST_BYTES)
     if content.lstrip()[:1] in ("{", "["):
         if query != Query(frozenset()):
-            raise InputError(f"{path}: maps, and no instance: parts, bound, horizon are of none")
+            raise InputError(f"{path}: these are maps, so parts, bound and horizon cannot be used")
         return [
             scene for document in maps.parse(content, path) for scene in of_document(document)
         ], None
@@ -186,7 +186,7 @@ def of_document(document: maps.Document) -> list[Scene]:
     for number, entry in enumerate(document.maps, 1):
         where = f"{document.where}: map {number}"
         if slots is None or not {"places", "links"} <= set(entry):
-            raise InputError(f"{where}: slots, places and links are wanted, as solve --json writes")
+            raise InputError(f"{where}: slots, places and links are wanted, as in solve --json")
         world = world_of(slots, entry, where)
         if sorted(step for step, _, _ in entry["at"]) != list(range(len(entry["at"]))):
             raise InputError(f"{where}: the steps of at are not 0, 1, 2, ..., each once")
@@ -202,8 +202,8 @@ def of_document(document: maps.Document) -> list[Scene]:
 
 
 def world_of(slots: int, entry: dict[str, Any], where: str) -> TopologicalMap:
-    """The map that ``places`` and ``links`` describe. Raises InputError if it is none: if it is
-    in parts, a gateway has two links, or is not there."""
+    """The map that ``places`` and ``links`` describe. Raises InputError if that is no map: if
+    it is not connected, or a gateway has two links, or does not exist."""
     try:
         stars = {
             int(place["place"]): frozenset(int(slot) for slot in place["gateways"])
@@ -229,11 +229,13 @@ def world_of(slots: int, entry: dict[str, Any], where: str) -> TopologicalMap:
     times = Counter(ends)
     for place, slot in ends:
         if slot not in stars.get(place, ()) or times[place, slot] > 1:
-            raise InputError(f"{where}: link at place {place}, gateway {slot}: not there, or two")
+            raise InputError(
+                f"{where}: place {place}: gateway {slot} has two links, or does not exist"
+            )
     if any(not 0 <= slot < slots for star in stars.values() for slot in star):
         raise InputError(f"{where}: a gateway is not from 0 to {slots - 1}")
     graph = nx.Graph([(a[0], b[0]) for a, b in links.items()])
     graph.add_nodes_from(stars)
     if not nx.is_connected(graph):
-        raise InputError(f"{where}: the map is in parts")
+        raise InputError(f"{where}: the map is not connected")
     return TopologicalMap(slots, stars, links, landmarks)
