@@ -354,7 +354,7 @@ class Impatient(Watch):
     """It stops after so many maps."""
 
     def __init__(self, most):
-        super().__init__(quiet=True)
+        super().__init__()
         self.most = most
 
     def tick(self):

@@ -213,7 +213,7 @@ BAD = [
     ("marker(1).", "step 1: the marker is seen, but lies nowhere"),
     ("pick(1). drop(1).", "step 1: the marker is taken up, but lies nowhere"),
     ("drop(0). turn(2,0). view(2,0). drop(2).", "step 0: it is 1 or 2 now"),
-    ("drop(1). turn(2,0). view(2,0). drop(2).", "step 2: the marker is put down, but is out"),
+    ("drop(1). turn(2,0). view(2,0). drop(2).", "step 2: the marker is put down, but lies"),
     ("drop(1,0).", "drop(1,0): drop has 1 argument, drop(T)"),
     ("pick(a).", "pick(a): a step or a slot is a whole number"),
     ('{"turn": 0, "view": [0], "drop": 1}', "drop: true or false is wanted"),
@@ -223,7 +223,7 @@ BAD = [
     ("[1]", "a JSON object is wanted"),
     ('{"turn": 0}', "view is missing"),
     ('{"view": [0]}', "turn is missing"),
-    ('{"turn": 0, "view": [2]}', "step 2: the view lacks slot 0, the gateway stood at"),
+    ('{"turn": 0, "view": [2]}', "step 2: the view lacks slot 0, the gateway where the agent"),
     (
         '{"turn": 0, "view": [0], "sound": 1}',
         '"sound": not one of drop, landmarks, marker, pick, turn, view',

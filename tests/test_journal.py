@@ -16,6 +16,7 @@ from topomap.paper import beyond, statistics
 from topomap.runtime.journal import Journal
 from topomap.runtime.watch import Watch
 from topomap.search import traversal
+from topomap.solver import solving
 from topomap.solver.share import ALONE
 
 GRID = str(ROOT / "instances/grid-3x3-snake.lp")

@@ -171,7 +171,7 @@ def test_maps_that_clash_with_it_are_not_sound(topomap, instance, tmp_path):
 @pytest.mark.parametrize(
     ("facts", "fault"),
     [
-        ("drop(1). drop(2).", "step 2: the marker is put down, but is out already"),
+        ("drop(1). drop(2).", "step 2: the marker is put down, but lies somewhere already"),
         ("pick(1).", "step 1: the marker is taken up, but lies nowhere"),
         ("drop(0). pick(1). marker(2).", "step 2: the marker is seen, but lies nowhere"),
         ("drop(3).", "step 3: it has no turn (the last one is 2)"),

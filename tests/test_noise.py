@@ -318,7 +318,7 @@ def test_maps_of_clingo_with_misreadings_are_checked(topomap, tmp_path):
 
 UNSEEN = {
     "slots(4). view(0,0). turn(1,2). view(1,0).": "turn 2: no gateway there after step 0",
-    "slots(4). view(0,0). turn(1,0). view(1,2).": "the view lacks slot 0, the gateway stood at",
+    "slots(4). view(0,0). turn(1,0). view(1,2).": "the view lacks slot 0, the gateway where",
     "slots(4). view(0,0). turn(1,0).": "step 1: no view",
     "slots(4). turn(1,0). view(1,0).": "step 0: no view",
 }

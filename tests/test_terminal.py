@@ -576,7 +576,7 @@ def test_a_map_of_clingo_is_the_only_one_given_if_clingo_gave_all(tmp_path, argu
 
 def first(file):
     """The first map of a file, as it is shown."""
-    found, fault = scenes.scenes_of(str(ROOT / GRID), Query(), Watch(), str(file))
+    found, fault, _ = scenes.scenes_of(str(ROOT / GRID), Query(), Watch(), str(file))
     assert fault is None
     return found[0]
 
@@ -599,7 +599,7 @@ def test_maps_of_clingo_are_not_shown_without_the_right_instance(inside, tmp_pat
     for call, fault in (
         ((file,), f"{file}: maps from clingo: the instance is wanted before them, "),
         ((PAPER, file), f"{file}: map 1: step "),
-        ((GRID, file, "--planar"), f"{file}: the maps are given: parts, bound, horizon"),
+        ((GRID, file, "--planar"), f"{file}: these are maps, so parts, bound and"),
         ((GRID, file, "--map", 5), f"{file}: it has 4 maps, there is no map 5"),
         ((file, file), f"{file}:1: the facts of an instance are wanted"),
         (("-", "-"), "-: standard input is the instance or the maps, not both"),

@@ -70,9 +70,9 @@ class Experience:
         )
 
     def marker(self) -> tuple[tuple[int, bool] | None, ...]:
-        """Of each step, if the marker lies somewhere when it ends: after which step it was put
-        down, and whether it is seen. (Who takes it up sees it; taking up comes before putting
-        down.)"""
+        """For each step at whose end the marker lies somewhere: after which step it was put
+        down, and whether it is seen. (Whoever takes it up sees it. After one step it is taken up
+        before it is put down.)"""
         told: list[tuple[int, bool] | None] = []
         down = None
         for step in range(self.steps + 1):
@@ -83,8 +83,8 @@ class Experience:
         return tuple(told)
 
     def corrected(self, misread: Iterable[Misread]) -> "Experience":
-        """The experience with the other of what was misread: seen what was missed, and not what
-        was imagined."""
+        """The experience without its misreadings: what was missed is seen, and what was imagined
+        is not."""
         views, landmarks = list(self.views), list(self.landmarks)
         for step, what in misread:
             if isinstance(what, int):
@@ -94,8 +94,8 @@ class Experience:
         return replace(self, views=tuple(views), landmarks=tuple(landmarks))
 
     def misled(self) -> list[int]:
-        """The steps after which the agent stands at no gateway, or leaves by none, by what it
-        sees there."""
+        """The steps after which the agent stands at no gateway, or leaves by none, according to
+        what it sees there."""
         needs = [{0, turn} for turn in self.turns] + [{0}]
         return [step for step, need in enumerate(needs) if not need <= self.views[step]]
 
@@ -130,7 +130,7 @@ def explore(
     drops: Iterable[int] = (),
     picks: Iterable[int] = (),
 ) -> tuple[Experience, tuple[DState, ...]]:
-    """What is seen from ``start`` (the gateway stood at) along ``route``, the absolute
+    """What is seen from ``start`` (the gateway of the agent) along ``route``, the absolute
     slots by which places are left; and the true hypothesis, as ``at/3`` would name it.
 
     The marker is put down after those of the steps ``drops`` when it is in hand, and taken up
@@ -259,7 +259,7 @@ class Facts:
     def _checked(self, noisy: bool) -> Iterator[Fault]:
         """What is wrong with the facts together: with slots(K), then step by step."""
         if not self.slots and not self.views and not self.turns:
-            yield Fault("no facts in it", lacks=True)
+            yield Fault("there are no facts in it", lacks=True)
             return
         slots = None
         if len(self.slots) != 1:
@@ -299,7 +299,8 @@ class Facts:
         turns = self.turns.get(step, {})
         if turns and step == 0:
             line = min(turns.values())
-            yield Fault("a turn; steps with a turn begin at 1", line, step)
+            yield Fault("there is a turn, but step 1 is the first with a turn", line, step)
+            return
         if len(turns) > 1:
             yield Fault("more than one turn", sorted(turns.values())[1], step)
         for turn, line in turns.items():
@@ -321,7 +322,7 @@ class Facts:
         if not view and turned:
             yield Fault(f"no view{HINT}", self.steps.get(step), step, lacks=True)
         elif view and 0 not in view:
-            said = f"the view lacks slot 0, the gateway stood at{HINT}"
+            said = f"the view lacks slot 0, the gateway where the agent stands{HINT}"
             yield Fault(said, min(view.values()), step, lacks=True)
 
     def experience(self) -> Experience:
@@ -345,8 +346,8 @@ def slots_fault(slots: int) -> str | None:
 
 
 def misfit(fact: clingo.Symbol, forms: Mapping[str, str] = SIGNATURES) -> str | None:
-    """Why a fact is none of an instance: not of one of the ``forms``, by name, or with another
-    term where a number is wanted."""
+    """Why a fact does not belong in an instance: it has none of the ``forms``, which are given
+    by name, or it has another term where a number is wanted."""
     name, arguments = fact.name, fact.arguments
     text = cut_short(str(fact))
     known = {name: form.count(",") + 1 for name, form in forms.items()}
@@ -367,12 +368,12 @@ def misfit(fact: clingo.Symbol, forms: Mapping[str, str] = SIGNATURES) -> str | 
 
 
 def marker_fault(marks: Container[str], out: bool) -> str | None:
-    """What cannot be of what is done with the marker after a step; ``out`` tells whether it lies
-    somewhere before that."""
+    """What is impossible in what is done with the marker after a step; ``out`` tells whether it
+    lies somewhere before that."""
     if "pick" in marks and not out:
         return "the marker is taken up, but lies nowhere"
     if "drop" in marks and out and "pick" not in marks:
-        return "the marker is put down, but is out already"
+        return "the marker is put down, but lies somewhere already"
     if "marker" in marks and not out and "drop" not in marks:
         return "the marker is seen, but lies nowhere"
     return None
@@ -396,8 +397,8 @@ _BRACKET = re.compile(rf"{_STRING}|[(|)]", re.DOTALL)
 
 def ground_facts(text: str, line: int = 1) -> Iterator[tuple[int, clingo.Symbol | str]]:
     """The ground facts of a text, each with the line it begins in; the first line is ``line``.
-    In the place of a statement that is no ground fact stands, in words, what it is. A script is
-    not read, nor what comes after it: its text is not of statements."""
+    In the place of a statement that is not a ground fact there is a text that says what it is.
+    A script is not read, nor is what comes after it, because its text has no statements."""
     fact: list[str] = []
     begins = line
     position = depth = 0
@@ -435,7 +436,7 @@ def _fact(text: str) -> clingo.Symbol | str:
         return f"{_short(text)} is not a ground fact{stop}"
     # clingo computes, and wraps numbers that are too large, without a word.
     if str(symbol) != _SPACE.sub(r"\1", text):
-        return f"{_short(text)} is no plain fact, clingo has {cut_short(str(symbol))}"
+        return f"{_short(text)} is not a plain fact: clingo reads it as {cut_short(str(symbol))}"
     return symbol
 
 

@@ -62,7 +62,7 @@ class Record:
         if not last.view:
             return f"step {step}: no view"
         if 0 not in last.view:
-            return f"step {step}: the view lacks slot 0, the gateway stood at"
+            return f"step {step}: the view lacks slot 0, the gateway where the agent stands"
         return None
 
     def whole(self) -> tuple[Step, ...]:
@@ -146,7 +146,7 @@ class Record:
                 raise LineFault(f"step {step}: slot {slot} is not in 0..{self.slots - 1}")
         if turn is not None:
             if step == 0:
-                raise LineFault("step 0: a turn; steps with a turn begin at 1")
+                raise LineFault("step 0: there is a turn, but step 1 is the first with a turn")
             if known.turn not in (None, turn):
                 raise LineFault(f"step {step}: more than one turn")
             if turn not in self.steps[step - 1].view:
@@ -204,7 +204,7 @@ class Record:
         if step and "turn" in data:
             record = record._seen(step, turn=data["turn"])
         elif "turn" in data:
-            raise LineFault("step 0: a turn; steps with a turn begin at 1")
+            raise LineFault("step 0: there is a turn, but step 1 is the first with a turn")
         for slot in view:
             record = record._seen(step, view=slot)
         for term in landmarks:
