@@ -10,7 +10,7 @@ import sys
 def run() -> None:
     """Run the command with the arguments of this process, and end the process."""
     if sys.argv[1:2] == ["clingo"]:  # which has its own ways with signals and streams
-        from topomap.clingo_command import run as clingo
+        from topomap.cli.clingo import run as clingo
 
         sys.exit(clingo(sys.argv[2:]))
     both = signal.SIGINT, signal.SIGTERM

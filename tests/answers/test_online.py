@@ -14,14 +14,15 @@ from topomap.model.query import Query
 from topomap.runtime.watch import Watch
 from topomap.search import traversal
 from topomap.solver import online, solving
-from topomap.solver.online import Certain, Follower, crossed
+from topomap.solver.boundaries import crossed
+from topomap.solver.online import Certain, OnlineSolver
 
 WATCH = Watch()
 
 
 def begun(experience, planar=False, bound=None, most=online.MOST_COUNTED):
     start = experience.views[0], experience.landmarks[0]
-    return Follower(experience.slots, *start, planar, bound, most, marks(experience, 0))
+    return OnlineSolver(experience.slots, *start, planar, bound, most, marks(experience, 0))
 
 
 def go(follower, experience, step):
@@ -166,7 +167,7 @@ def test_steps_that_were_taken_back_leave_no_trace():
 
 
 def test_no_hypothesis_is_left_and_undo_mends_it():
-    follower = Follower(2, frozenset({0, 1}), frozenset({"a"}))
+    follower = OnlineSolver(2, frozenset({0, 1}), frozenset({"a"}))
     follower.step(1, frozenset({0}))
     whole = follower.status(WATCH)
     follower.step(0, frozenset({0, 1}), frozenset({"b"}))  # back where there was a sign a

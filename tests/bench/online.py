@@ -18,7 +18,7 @@ from topomap.model.query import Query
 from topomap.runtime.files import output
 from topomap.runtime.watch import Stopped, Watch
 from topomap.solver import online, solving
-from topomap.solver.online import Follower
+from topomap.solver.online import OnlineSolver
 
 ROOT = Path(__file__).resolve().parents[2]
 RUNS = [
@@ -32,8 +32,8 @@ RUNS = [
 ]
 HEAD = f"""# A step of `topomap follow`
 
-Written by `python -m bench.online` in `tests/`. A step *online* is `Follower.step` and
-`Follower.status`: what is new is ground, then the number of hypotheses (up to
+Written by `python -m bench.online` in `tests/`. A step *online* is `OnlineSolver.step` and
+`OnlineSolver.status`: what is new is ground, then the number of hypotheses (up to
 {online.MOST_COUNTED:,}; of
 more it says so), the best maps, and what is certain. *From scratch* the experience up to that
 step is ground and counted, then ground again for the best maps, as `topomap count` and `solve
@@ -84,7 +84,7 @@ def measured(name: str, planar: bool, places: int | None, limit: float) -> Itera
             view, landmarks = experience.views[step], experience.landmarks[step]
             follower.step(experience.turns[step - 1], view, landmarks)
         else:
-            follower = Follower(experience.slots, *start, planar, places)
+            follower = OnlineSolver(experience.slots, *start, planar, places)
         status = follower.status(Watch())
         done = time.process_time()
         try:

@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from functools import cache
 from typing import Any
 
-import topomap
+from topomap.runtime.version import VERSION
 from topomap.cli.arguments import STATUS, Parser
 from topomap.runtime.errors import InputError, say
 from topomap.runtime.status import BAD_INPUT, DONE, INTERRUPTED, PARTIAL
@@ -93,7 +93,7 @@ def _parser(name: str | None) -> Parser:
         epilog=f"example:\n  topomap solve instances/grid-3x3-snake.lp --optimal\n\n{STATUS}",
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    parser.add_argument("--version", action="version", version=f"topomap {topomap.__version__}")
+    parser.add_argument("--version", action="version", version=f"topomap {VERSION}")
     group = parser.add_subparsers(metavar="COMMAND", required=True)
     for one in [name] if name else SUBCOMMANDS:
         _module(one).add(group)

@@ -1,12 +1,15 @@
-"""The subcommand ``clingo``."""
+"""The subcommand ``clingo``, as the wheel of clingo from PyPI has no such command: clingo's own
+main function, options and exit statuses (10 satisfiable, 20 unsatisfiable, 30 all found, 65 bad
+input)."""
 
+from collections.abc import Sequence
 from typing import Any
 
 from topomap.cli.arguments import command
 
 
 def add(group: Any) -> None:
-    """The parser of ``topomap clingo``."""
+    """The parser of ``topomap clingo``, for help: clingo reads its options itself."""
     command(
         group,
         "clingo",
@@ -15,3 +18,13 @@ def add(group: Any) -> None:
   topomap clingo --help
   topomap clingo "$(topomap path)/topomap.lp" instances/grid-3x3-snake.lp 0 --quiet""",
     )
+
+
+def run(arguments: Sequence[str]) -> int:
+    """Run clingo with these arguments; returns its exit status."""
+    from clingo.application import Application, clingo_main
+
+    class Clingo(Application):
+        program_name = "clingo"
+
+    return clingo_main(Clingo(), arguments)

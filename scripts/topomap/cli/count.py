@@ -1,5 +1,11 @@
 """The subcommand ``count``."""
 
+import argparse
+from topomap.cli.calls import crew_of, parts_of, run_of
+from topomap.runtime import formats
+from topomap.runtime.files import output
+from topomap.runtime.journal import Journal
+from topomap.runtime.status import exit_status
 from typing import Any
 
 from topomap.cli.arguments import add_crew, add_encoding, add_query, add_resume, command
@@ -21,3 +27,35 @@ def add(group: Any) -> None:
     add_crew(made)
     add_encoding(made)
     add_resume(made)
+
+
+def run(args: argparse.Namespace) -> int:
+    """Count the search tree of an instance, by clingo."""
+    from topomap.api.count import count
+    from topomap.model.experience import read
+    from topomap.paper.statistics import figures_text
+    from topomap.runtime.watch import heeding
+
+    experience = read(args.instance)
+    with (
+        crew_of(args) as crew,
+        Journal(args.output, run_of(args, experience), args.resume) as journal,
+        output(args.output) as out,
+    ):
+        with heeding(args.timeout) as watch:
+            counts = count(
+                experience,
+                bound=args.bound,
+                horizon=args.horizon,
+                encoding=args.encoding,
+                watch=watch,
+                journal=journal,
+                crew=crew,
+                **parts_of(args),
+            )
+        if args.json:
+            out.write(formats.line({"instance": args.instance, **counts}, counts.fault))
+        else:
+            out.write(figures_text(counts, counts.fault))
+        journal.complete = counts.complete
+    return exit_status(counts.fault, bool(counts["final"]))

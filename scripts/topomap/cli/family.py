@@ -1,5 +1,14 @@
 """The subcommand ``family``."""
 
+import argparse
+import contextlib
+import shlex
+from pathlib import Path
+from topomap.cli.generate import instance_of
+from topomap.runtime import formats
+from topomap.runtime.errors import InputError
+from topomap.runtime.files import output, text
+from topomap.runtime.status import DONE
 from typing import Any
 
 from topomap.cli.arguments import command
@@ -22,3 +31,51 @@ def add(group: Any) -> None:
         help="folder for NAME.args; files of instances no longer listed go",
     )
     made.add_argument("--json", action="store_true", help="print JSON")
+
+
+def run(args: argparse.Namespace) -> int:
+    """Write the call of each instance of a family where it changed, and drop what is no
+    longer listed of what the last call made."""
+    from topomap.cli import parse
+    from topomap.worlds.family import expand
+
+    folder = Path(args.directory)
+    calls: dict[str, str] = {}
+    for line, call in expand(args.file):
+        try:
+            with contextlib.redirect_stdout(None):
+                parsed = parse(["generate", *call])
+            if parsed.output or parsed.truth or parsed.json:
+                raise InputError("-o, --truth and --json have no place in a family")
+            made = instance_of(parsed)
+        except SystemExit:
+            raise InputError(f"{args.file}:{line}: --help has no place in a family") from None
+        except InputError as error:
+            raise InputError(f"{args.file}:{line}: {error}") from None
+        if made.name in calls:
+            raise InputError(
+                f"{args.file}:{line}: a second instance named {made.name}; --name can part them"
+            )
+        calls[made.name] = shlex.join(call) + "\n"
+        if parsed.kind == "network":  # make sees by this line that the map was changed
+            is_now = Path(parsed.file).stat()
+            calls[made.name] += f"# {is_now.st_size} bytes, changed {is_now.st_mtime_ns}\n"
+    # At any moment what was made is listed, so that a call that was cut short can be repeated.
+    made_before = folder / ".family"
+    old = text(made_before).splitlines() if made_before.exists() else []
+    for name in set(old) - set(calls):
+        for left in (folder / f"{name}.lp", folder / f"{name}.args"):
+            if left.parent == folder:
+                left.unlink(missing_ok=True)
+    with output(str(made_before), parents=True) as file:
+        file.writelines(f"{name}\n" for name in calls)
+    for name, written in calls.items():
+        path = folder / f"{name}.args"
+        if not path.exists() or text(path) != written:
+            with output(str(path)) as file:
+                file.write(written)
+    if args.json:
+        print(formats.line({"instances": list(calls)}), end="")
+    else:
+        print("\n".join(calls))
+    return DONE

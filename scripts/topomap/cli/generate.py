@@ -1,9 +1,21 @@
 """The subcommand ``generate``."""
 
+import argparse
+import contextlib
+from pathlib import Path
+from typing import TYPE_CHECKING
+from topomap.cli.calls import environment_of
+from topomap.runtime import formats
+from topomap.runtime.errors import InputError
+from topomap.runtime.files import output
+from topomap.runtime.status import DONE
 from typing import Any
 
 from topomap.cli.arguments import Parser, add_environments, add_start, command, number
 from topomap.runtime.limits import MOST_STEPS
+
+if TYPE_CHECKING:
+    from topomap.worlds.instance import Instance
 
 
 def add(group: Any) -> None:
@@ -34,3 +46,50 @@ def add(group: Any) -> None:
     add("--json", action="store_true", help="print a summary as JSON")
     add("-o", "--output", metavar="FILE", help="file or folder to write (default: stdout)")
     add_environments(made, common, "--route tour")
+
+
+def run(args: argparse.Namespace) -> int:
+    """Explore an environment and write the instance."""
+    from topomap.model.found import steps_json
+
+    made = instance_of(args)
+    target = args.output
+    if target and (target.endswith("/") or Path(target).is_dir()):
+        target = str(Path(target) / f"{made.name}.lp")
+    if target and args.truth and Path(target).resolve() == Path(args.truth).resolve():
+        raise InputError(f"{target}: it cannot be both --output and --truth")
+    with contextlib.ExitStack() as files:
+        if args.truth:
+            truth = formats.line({"maps": [{"at": steps_json(made.truth)}]})
+            files.enter_context(output(args.truth)).write(truth)
+        if target or not args.json:
+            files.enter_context(output(target)).write(made.text())
+    if args.json:
+        summary = {
+            "name": made.name,
+            "file": target,
+            "header": made.header,
+            "steps": made.experience.steps,
+            "facts": None if target else made.experience.facts(),
+        }
+        print(formats.line(summary), end="")
+    return DONE
+
+
+def instance_of(args: argparse.Namespace) -> "Instance":
+    """The instance that a call of ``generate`` makes."""
+    from topomap.api.generate import generate
+
+    world = environment_of(args)
+    if args.route == "walk" and args.steps is None:
+        raise InputError("topomap generate: --route walk needs --steps")
+    return generate(
+        world,
+        route=args.route,
+        steps=args.steps,
+        start=args.start,
+        facing=args.facing,
+        signs=args.signs,
+        seed=args.seed,
+        name=args.name,
+    )

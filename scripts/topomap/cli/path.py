@@ -1,5 +1,9 @@
 """The subcommand ``path``."""
 
+import argparse
+from topomap.runtime import formats
+from topomap.runtime.folders import ENCODINGS, INSTANCES
+from topomap.runtime.status import DONE
 from typing import Any
 
 from topomap.cli.arguments import command
@@ -23,3 +27,10 @@ def add(group: Any) -> None:
         help="which folder (default: %(default)s)",
     )
     made.add_argument("--json", action="store_true", help="write JSON: both folders")
+
+
+def run(args: argparse.Namespace) -> int:
+    """Print where the encodings or the instances are."""
+    found = {"encodings": str(ENCODINGS), "instances": str(INSTANCES)}
+    print(formats.line(found).rstrip() if args.json else found[args.what])
+    return DONE

@@ -1,5 +1,14 @@
 """The subcommand ``solve``."""
 
+import argparse
+import json
+from typing import IO, TYPE_CHECKING
+from topomap.cli.calls import crew_of, parts_of, run_of
+from topomap.runtime import formats
+from topomap.runtime.errors import InputError, say
+from topomap.runtime.files import output
+from topomap.runtime.journal import Journal
+from topomap.runtime.status import INTERRUPT, exit_status
 from typing import Any
 
 from topomap.cli.arguments import (
@@ -12,6 +21,11 @@ from topomap.cli.arguments import (
     number,
 )
 from topomap.model.vocabulary import PARTS
+
+if TYPE_CHECKING:
+    from topomap.model.experience import Experience
+    from topomap.model.topology import TopologicalMap
+    from topomap.solver.share import Crew
 
 
 def add(group: Any) -> None:
@@ -52,3 +66,100 @@ def add(group: Any) -> None:
         help="allow up to K wrong views, as few as can be: gateways and landmarks missed or "
         "imagined; by the plain encoding",
     )
+
+
+def run(args: argparse.Namespace) -> int:
+    """Enumerate the maps of each instance."""
+    from topomap.documents.maps import real_map
+    from topomap.model.experience import read
+
+    _with_noise(args)
+    inputs = []
+    for path in args.instance:
+        experience = read(path, args.noise is not None)
+        truth = real_map(args.truth, experience, args.horizon) if args.truth else None
+        inputs.append((path, experience, truth))
+    journal_of = run_of(args, *(experience for _, experience, _ in inputs))
+    statuses, faults = [], []
+    with (
+        crew_of(args) as crew,
+        Journal(args.output, journal_of, args.resume, True) as journal,
+        output(args.output) as out,
+    ):
+        if args.json and len(inputs) > 1:
+            out.write(json.dumps(formats.headed({}))[:-1] + ', "results": [\n')
+        for number, (path, experience, truth) in enumerate(inputs):
+            if len(inputs) > 1:
+                out.write(",\n" * (number > 0) if args.json else f"{path}\n")
+            fault, some = _solve_one(args, path, experience, truth, journal, crew, out)
+            statuses.append(exit_status(fault, some))
+            if fault:
+                faults.append(fault)
+                journal.stop()
+            if fault == INTERRUPT:
+                break
+        if args.json and len(inputs) > 1:
+            last = faults[-1] if faults else None
+            out.write("], " + json.dumps(formats.ended(last))[1:] + "\n")
+        journal.complete = not faults
+    return max(statuses)
+
+
+def _solve_one(
+    args: argparse.Namespace,
+    path: str,
+    experience: "Experience",
+    truth: "TopologicalMap | None",
+    journal: Journal,
+    crew: "Crew",
+    out: IO[str],
+) -> tuple[str | None, bool]:
+    """Write the maps of an instance; why they may not be all, if so, and whether there are any."""
+    from topomap.api.solve import solve
+    from topomap.documents.answers import Report
+    from topomap.runtime.watch import Attempt, heeding
+
+    with heeding(args.timeout) as watch:
+        answer = solve(
+            experience,
+            optimal=args.optimal,
+            bound=args.bound,
+            horizon=args.horizon,
+            noise=args.noise,
+            by=args.by,
+            encoding=args.encoding,
+            limit=args.limit,
+            watch=watch,
+            journal=journal,
+            crew=crew,
+            **parts_of(args),
+        )
+        kind = "optimal" if args.optimal else None
+        report = Report(out, path, experience, answer.query, kind, truth, args.json)
+        with Attempt() as attempt:
+            for one in answer.stream():
+                report.add(one.found)
+        fault = answer.fault or attempt.fault
+        report.end(fault)
+    return fault, bool(report.count)
+
+
+def _with_noise(args: argparse.Namespace) -> None:
+    """Settle the encoding. Raises InputError if misreadings are allowed and something is asked
+    for that does not go with them."""
+    if args.noise is None:
+        args.encoding = args.encoding or "fast"
+        return
+    others = {
+        "--by search": args.by == "search",
+        "--jobs": (args.jobs or 1) > 1,
+        "--dask": args.dask,
+        "--resume": args.resume,
+        "--truth": args.truth,
+    }
+    for name, asked in others.items():
+        if asked:
+            raise InputError(f"topomap solve: --noise does not go with {name}")
+    if args.encoding == "fast":
+        say("topomap solve: --noise: the plain encoding is used, not the fast one")
+    args.encoding = "plain"

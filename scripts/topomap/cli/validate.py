@@ -1,5 +1,9 @@
 """The subcommand ``validate``."""
 
+import argparse
+from topomap.runtime import formats
+from topomap.runtime.errors import printable
+from topomap.runtime.status import BAD_INPUT, DONE
 from typing import Any
 
 from topomap.cli.arguments import command
@@ -20,3 +24,19 @@ def add(group: Any) -> None:
     add = made.add_argument
     add("file", nargs="+", metavar="FILE", help="an instance; - is standard input")
     add("--json", action="store_true", help="write JSON")
+
+
+def run(args: argparse.Namespace) -> int:
+    """Tell of each file what is wrong with it; status 2 if anything is."""
+    from topomap.api.validate import validate
+
+    judged = map(validate, args.file)
+    if args.json:
+        whole = list(judged)
+        print(formats.line({"files": [one.document() for one in whole]}), end="")
+        return DONE if all(one.valid for one in whole) else BAD_INPUT
+    status = DONE
+    for one in judged:
+        print(*map(printable, one.lines()), sep="\n", flush=True)
+        status = status if one.valid else BAD_INPUT
+    return status

@@ -13,13 +13,12 @@ from typing import Any
 
 from clingo import parse_term
 
-from topomap.documents.check import STEP_RULES, At, Grown, Violation, by_definition, by_rules
-from topomap.model import words
+from topomap.documents.check import STEP_RULES, by_definition
 from topomap.model.experience import DState, Experience, Misread
 from topomap.model.found import UNPROVED
-from topomap.model.topology import Gateway, TopologicalMap
+from topomap.model.topology import TopologicalMap
 from topomap.model.vocabulary import PARTS, PROPERTIES
-from topomap.runtime import formats
+from topomap.runtime import files, formats
 from topomap.runtime.errors import InputError
 from topomap.runtime.files import text
 from topomap.runtime.limits import LARGEST
@@ -80,7 +79,7 @@ class Document:
             yield "closed"
 
 
-def read(path: str, most: int = MOST_BYTES) -> list[Document]:
+def read_maps(path: str, most: int = MOST_BYTES) -> list[Document]:
     """The maps in a file of ``most`` bytes at most. Raises InputError, one line, where it
     holds something else."""
     return parse(text(path, most), path)
@@ -137,7 +136,7 @@ def document(where: str, data: Any) -> Document:
     return Document(where, data["maps"], claims)
 
 
-def _is_number(value: object) -> bool:
+def is_number(value: object) -> bool:
     return isinstance(value, int) and not isinstance(value, bool) and abs(value) <= LARGEST
 
 
@@ -146,7 +145,7 @@ def _is_list_of(kind: Callable[[Any], bool]) -> Callable[[Any], bool]:
 
 
 def _is_number_or_none(value: object) -> bool:
-    return value is None or _is_number(value)
+    return value is None or is_number(value)
 
 
 def _is_text(value: object) -> bool:
@@ -159,17 +158,17 @@ def _is_truth(value: object) -> bool:
 
 CLAIMS: dict[str, Callable[[Any], bool]] = {
     "instance": _is_text,
-    "slots": _is_number,
+    "slots": is_number,
     "parts": _is_list_of(lambda part: isinstance(part, str) and part in PARTS),
     "bound": _is_number_or_none,
     "horizon": _is_number_or_none,
     "optimal": _is_truth,
-    "noise": lambda value: value is None or (_is_number(value) and value >= 0),
+    "noise": lambda value: value is None or (is_number(value) and value >= 0),
     "kind": lambda kind: kind is None or kind in KINDS,
-    "count": _is_number,
-    "cost": _is_list_of(_is_number),
+    "count": is_number,
+    "cost": _is_list_of(is_number),
     "proved": _is_truth,
-    "nodes": lambda value: _is_number(value) and value > 0,
+    "nodes": lambda value: is_number(value) and value > 0,
     "complete": _is_truth,
     "fault": _is_text,
 }
@@ -177,7 +176,7 @@ CLAIMS: dict[str, Callable[[Any], bool]] = {
 
 def _is_at(at: object) -> bool:
     return isinstance(at, list) and all(
-        isinstance(dstate, list) and len(dstate) == 3 and all(map(_is_number, dstate))
+        isinstance(dstate, list) and len(dstate) == 3 and all(map(is_number, dstate))
         for dstate in at
     )
 
@@ -257,85 +256,18 @@ def _lacking(data: dict[str, Any], many: int, again: bool) -> str | None:
     return None
 
 
-@dataclass(frozen=True)
-class Verdict:
-    """What is wrong with a map: rules broken, with steps, and other faults in words."""
-
-    where: str
-    violations: list[Violation]
-    faults: list[str]
-    short: bool = False  # the map is of part of the steps
-
-    @property
-    def sound(self) -> bool:
-        return not self.violations and not self.faults
-
-
-def verdicts(
-    seen: Experience,
-    documents: list[Document],
-    demands: Sequence[str],
-    truth: TopologicalMap | None,
-    noise: int | None = None,
-) -> Iterator[Verdict]:
-    """A verdict on each map, by ``check.lp`` and by definition, of what was seen but for what
-    the map says was misread: after ``noise`` steps at most, and as many as its document allows.
-    Raises InputError if one is much longer than the experience."""
-    for document in documents:
-        for number, entry in enumerate(document.maps, 1):
-            if len(entry["at"]) > LONGER * (seen.steps + 1):
-                fault = f"at has {len(entry['at'])} dstates, the instance {seen.steps + 1}"
-                raise InputError(f"{document.where}: map {number}: {fault}")
-    for document in documents:
-        wanted = sorted({*demands, *document.demands()})
-        numbers: dict[tuple[At, frozenset[Misread]], int] = {}
-        bounds = [k for k in (noise, document.claims.get("noise")) if k is not None]
-        for number, entry in enumerate(document.maps, 1):
-            at = tuple(sorted((step, place, slot) for step, place, slot in entry["at"]))
-            rules: set[Violation] = set()
-            definition: set[Violation] = set()
-            found = []
-            try:
-                misread = misread_of(seen, entry)
-                experience = seen.corrected(misread)
-                found = list(_mistaken(experience, misread, len(at), min(bounds, default=None)))
-            except (LookupError, TypeError, ValueError):
-                misread, found = frozenset(), ["misread: not what topomap solve --json writes"]
-            if not found:
-                rules = by_rules(experience, at, wanted)
-                definition = by_definition(experience, at, wanted)
-            if not found and not STEP_RULES & {rule for rule, _ in rules | definition}:
-                found = list(faults(experience, document, entry, at))
-                if rules != definition:
-                    found.append("check.lp and the check by definition do not agree on it")
-                if truth and "real" in entry:
-                    real = experience.map_of(tuple((p, s) for _, p, s in at)).isomorphic(truth)
-                    if real != entry["real"]:
-                        found.append(f"real: it is {'not ' * (not real)}the real map")
-            if numbers.setdefault((at, misread), number) != number:
-                found.append(f"the same as map {numbers[at, misread]}")
-            violations = sorted(rules | definition, key=lambda violation: violation[::-1])
-            said = document.claims.get("count", len(document.maps))
-            if number == 1 and said != len(document.maps):
-                found.append(f"count is {said}, there are {len(document.maps)} maps")
-            if truth is None and "real" in entry:
-                found.append("real: only --truth can tell")
-            short = len(at) <= seen.steps
-            yield Verdict(f"{document.where}: map {number}", violations, found, short)
-
-
 def misread_of(seen: Experience, entry: dict[str, Any]) -> frozenset[Misread]:
     """What a map says was misread. Raises a LookupError, TypeError or ValueError where it cannot
     be."""
     said = entry.get("misread", [])
     signs = frozenset[str]().union(*seen.landmarks)
     found: set[Misread] = set()
-    for one in _list(said):
+    for one in list_of(said):
         what = one["gateway"] if "gateway" in one else one["landmark"]
         step, gateway = one["step"], "gateway" in one
         known = range(seen.slots) if gateway else signs
         views = seen.views if gateway else seen.landmarks
-        if not (_is_number(step) and step >= 0 and what in known) or isinstance(what, bool | float):
+        if not (is_number(step) and step >= 0 and what in known) or isinstance(what, bool | float):
             raise ValueError
         if one.keys() - {"seen"} != {"step", "gateway" if gateway else "landmark"}:
             raise ValueError
@@ -347,120 +279,19 @@ def misread_of(seen: Experience, entry: dict[str, Any]) -> frozenset[Misread]:
     return frozenset(found)
 
 
-def _mistaken(
-    corrected: Experience, misread: frozenset[Misread], steps: int, most: int | None
-) -> Iterator[str]:
-    """What is wrong with what is said to be misread, in a map of so many steps."""
-    wrong = {step for step, _ in misread}
-    if wrong and most is None:
-        yield "misread: it is not said how many views may be wrong (noise)"
-    elif len(wrong) > (most or 0):
-        yield f"misread: {words.number(len(wrong), 'view')}, more than {most}"
-    if late := [step for step in wrong if step >= steps]:
-        yield f"misread: step {min(late)} is not in at"
-    if left := corrected.cut(max(0, steps - 1)).misled():
-        yield f"misread: the agent still stands at no gateway or leaves by none, step {left[0]}"
-
-
-def faults(
-    experience: Experience, document: Document, entry: dict[str, Any], at: At
-) -> Iterator[str]:
-    """What is said of a map, by itself or with the others, and does not follow from ``at``."""
-    grown = Grown(experience, {step: (place, slot) for step, place, slot in at}, len(at) - 1)
-    for key, said in entry.items():
-        if key in ("at", "real", "misread"):
-            continue
-        if key not in KEYS:
-            yield f"{key}: no such key of a map"
-            continue
-        try:
-            same = KEYS[key](grown, experience, said)
-        except (LookupError, TypeError, ValueError):
-            same = False
-        if not same:
-            yield f"{key}: not what at says"
-    claims = document.claims
-    last = claims.get("horizon")
-    if "horizon" in claims and grown.step != (
-        experience.steps if last is None else min(last, experience.steps)
-    ):
-        yield f"horizon: at ends after step {grown.step}"
-    cost = _noise(entry, claims) + _cost(grown, claims)
-    if "cost" in claims and claims["cost"] != cost:
-        yield f"cost: it is {cost}"
-
-
-def _noise(entry: dict[str, Any], claims: dict[str, Any]) -> list[int]:
-    """How many views are wrong, and how much was misread, if that was minimised."""
-    misread = entry.get("misread", [])
-    return [] if claims.get("noise") is None else [len({m["step"] for m in misread}), len(misread)]
-
-
-def _cost(grown: Grown, claims: dict[str, Any]) -> list[int]:
-    """What was minimised, most important first."""
-    parts = claims.get("parts", ())
-    minimal = "minimal" in parts or claims.get("optimal") or claims.get("kind") == BEST_FIRST
-    genus = [grown.genus()] if "genus" in parts else []
-    return genus + ([len(grown.paths()), len(grown.stars)] if minimal else [])
-
-
-def _places(grown: Grown, experience: Experience, said: Any) -> bool:
-    def in_order(places: Any) -> list[dict[str, Any]]:
-        numbers = (number for place in places for number in (place["place"], *place["gateways"]))
-        if not all(map(_is_number, numbers)):
-            raise ValueError
-        lists = ("gateways", "landmarks")
-        ordered = [{**place, **{key: sorted(place[key]) for key in lists}} for place in places]
-        return sorted(ordered, key=lambda place: int(place["place"]))
-
-    ours = [
-        {"place": place, "gateways": star, "landmarks": list(experience.landmarks[place])}
-        for place, star in grown.stars.items()
-    ]
-    return in_order(_list(said)) == in_order(ours)
-
-
-def _links(grown: Grown, _: Experience, said: Any) -> bool:
-    ours = {tuple(sorted(link)) for link in grown.links.items()}
-    return sorted(tuple(sorted(_gateways(link))) for link in _list(said)) == sorted(ours)
-
-
-def _paths(grown: Grown, _: Experience, said: Any) -> bool:
-    return sorted(grown.one_way(_gateways(path)) for path in _list(said)) == grown.paths()
-
-
-def _faces(grown: Grown, _: Experience, said: Any) -> bool:
-    def from_least(face: list[Gateway]) -> list[Gateway]:
-        start = face.index(min(face)) if face else 0
-        return face[start:] + face[:start]
-
-    ours = sorted(map(from_least, grown.faces()))
-    return sorted(from_least(_gateways(face)) for face in _list(said)) == ours
-
-
-def _list(said: Any) -> list[Any]:
+def list_of(said: Any) -> list[Any]:
     if not isinstance(said, list):
         raise ValueError
     return said
 
 
-def _gateways(said: Any) -> list[Gateway]:
-    return [_gateway(gateway) for gateway in _list(said)]
-
-
-def _gateway(said: Any) -> Gateway:
-    place, slot = _list(said)
-    if not (_is_number(place) and _is_number(slot)):
-        raise ValueError
-    return place, slot
-
-
-KEYS: dict[str, Callable[[Grown, Experience, Any], bool]] = {
-    "places": _places,
-    "links": _links,
-    "paths": _paths,
-    "faces": _faces,
-    "genus": lambda grown, _, said: _is_number(said) and grown.genus() == said,
-    "pending": lambda grown, _, said: sorted(_gateways(said)) == sorted(grown.pending()),
-    "dstate": lambda grown, _, said: _gateway(said) == grown.dstate,
-}
+def real_map(file: str, experience: Experience, horizon: int | None) -> TopologicalMap:
+    """The real map of an experience, from a file that ``generate --truth`` wrote."""
+    entries = [entry for document in read_maps(file, files.MOST_BYTES) for entry in document.maps]
+    if len(entries) != 1:
+        raise InputError(f"{file}: {len(entries)} maps; the real map is one")
+    at = entries[0]["at"]
+    if len(at) != experience.steps + 1:
+        raise InputError(f"{file}: {len(at) - 1} steps, the instance has {experience.steps}")
+    last = experience.steps if horizon is None else horizon
+    return experience.map_of(hypothesis(file, at, experience, rules=STEP_RULES)[: last + 1])

@@ -64,7 +64,7 @@ class Scene:
         ]
         name = short(PurePath(printable(self.name)).stem, 100)
         kind = short(printable(self.kind), 60)
-        title = self.caption or f"{name}: {which}{f', {kind}' * bool(kind)}"
+        title = self.caption or f"{f'{name}: ' * bool(name)}{which}{f', {kind}' * bool(kind)}"
         return f"{title}\n{', '.join(sizes)}"
 
     @property
@@ -98,7 +98,7 @@ def read(
             raise InputError(f"{given}: the maps are given: parts, bound, horizon are of none")
         if path == given == "-":
             raise InputError("-: standard input is the instance or the maps, not both")
-        documents = maps.of_instance(maps.read(given), path)
+        documents = maps.of_instance(maps.read_maps(given), path)
         if not documents:
             raise InputError(f"{given}: no maps of {path} in it")
         noisy = any("misread" in entry for document in documents for entry in document.maps)

@@ -10,12 +10,16 @@ MODULES = {
 }
 
 
+def lacking(extra: str) -> str | None:
+    """A module of an extra that is not installed, if there is one."""
+    return next((module for module in MODULES[extra] if find_spec(module) is None), None)
+
+
 def need(extra: str, what: str) -> None:
     """Raise InputError, one line that begins with ``what``, if an extra is not installed."""
-    for module in MODULES[extra]:
-        if find_spec(module) is None:
-            raise InputError(
-                f"{what}: {module} is not installed; it comes with the extra {extra}: "
-                f"pip install '.[{extra}]' in the folder of topomap, "
-                f"or 'FILE.whl[{extra}]' with the file of its wheel"
-            )
+    if module := lacking(extra):
+        raise InputError(
+            f"{what}: {module} is not installed; it comes with the extra {extra}: "
+            f"pip install '.[{extra}]' in the folder of topomap, "
+            f"or 'FILE.whl[{extra}]' with the file of its wheel"
+        )

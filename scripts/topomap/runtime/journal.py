@@ -9,7 +9,7 @@ from errno import ENAMETOOLONG
 from pathlib import Path
 from typing import Any, BinaryIO
 
-from topomap import __version__
+from topomap.runtime.version import VERSION
 from topomap.runtime.errors import InputError, of_file, say
 
 HEAD = b'{"topomap": '
@@ -39,7 +39,7 @@ class Journal:
         self._cut_too, self._output = cut_too, output
         self._end = self._units = self._sum = 0  # of what counts
         self._reader: BinaryIO | None = None
-        head = json.dumps({"topomap": __version__, **(run or {})}) + "\n"
+        head = json.dumps({"topomap": VERSION, **(run or {})}) + "\n"
         if output is None or (Path(output).exists() and not Path(output).is_file()):
             if resume:
                 raise InputError("--resume: it needs an output file (-o)")

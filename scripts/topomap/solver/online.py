@@ -15,12 +15,12 @@ import clingo
 
 from topomap.model.experience import MARKER, DState, Experience
 from topomap.model.query import Query
-from topomap.model.topology import Gateway
 from topomap.runtime.folders import ENCODINGS
 from topomap.runtime.limits import MOST_COUNTED
-from topomap.runtime.watch import MEMORY, Stopped, Watch
+from topomap.runtime.watch import Attempt, Watch
 from topomap.search.hypothesis import Hypothesis
 from topomap.search.traversal import OFTEN, root
+from topomap.solver.boundaries import Boundaries
 
 TRIED = 10  # times as many nodes are visited to tell that there are more
 MAPS = 100  # best maps that are kept
@@ -61,7 +61,7 @@ class Status:
     fault: str | None = None
 
 
-class Follower:
+class OnlineSolver:
     """An exploration that goes on, from its start; steps can be taken back."""
 
     def __init__(
@@ -85,7 +85,7 @@ class Follower:
         self._control = clingo.Control(arguments)
         self._control.load(str(ENCODINGS / "online.lp"))
         self._control.load(str(ENCODINGS / "online/certain.lp"))
-        self._boundaries = _Boundaries(self)
+        self._boundaries = Boundaries(self)
         self._control.register_propagator(self._boundaries)
         self._control.add("base", [], f"slots({slots}). #external bounded.")
         self.visits: list[int] = []  # the number of each step in the program
@@ -153,7 +153,7 @@ class Follower:
     def status(self, watch: Watch) -> Status:
         """What is known now; at the time limit, what is known until then."""
         known = Status(self.experience.steps)
-        try:
+        with Attempt() as attempt:
             kind, cost, best = self.best(watch)
             shown, every = tuple(best[:MAPS]), len(best) <= MAPS
             known = replace(known, kind=kind, cost=cost, best=shown, all_best=every)
@@ -164,9 +164,7 @@ class Follower:
                 self._none, number, exact = known.step, 0, True
             if number >= 0:
                 known = replace(known, hypotheses=number, exact=exact, none_since=self._none)
-        except (Stopped, MemoryError) as stop:
-            known = replace(known, fault=str(stop) or MEMORY)
-        return known
+        return replace(known, fault=attempt.fault)
 
     def count(self, watch: Watch) -> tuple[int, bool]:
         """How many hypotheses there are, and true; or a number that they are more than (-1 if
@@ -235,7 +233,7 @@ class Follower:
             found: list[tuple[DState, ...]] = []
             cost: list[int] = []
 
-            def read(model: clingo.Model, found: Any = found, cost: Any = cost) -> bool:
+            def take(model: clingo.Model, found: Any = found, cost: Any = cost) -> bool:
                 if model.optimality_proven:
                     cost[:] = model.cost
                     found.append(self._dstates(model))
@@ -244,7 +242,7 @@ class Follower:
             self._configure("auto", "optN")
             self._control.assign_external(_atom("bounded"), True)
             try:
-                self._solve(watch, assumed, read)
+                self._solve(watch, assumed, take)
             finally:
                 self._control.assign_external(_atom("bounded"), False)
             if found:
@@ -255,12 +253,12 @@ class Follower:
         """What holds in all hypotheses; nothing, if there is none."""
         atoms: list[clingo.Symbol] = []
 
-        def read(model: clingo.Model) -> bool:
+        def take(model: clingo.Model) -> bool:
             atoms[:] = model.symbols(shown=True)
             return True
 
         self._configure("cautious", "ignore")
-        self._solve(watch, [], read)
+        self._solve(watch, [], take)
         step = {visit: number for number, visit in enumerate(self.visits)}
         same, new = set(), set()
         first: dict[int, tuple[int, int]] = {}
@@ -304,9 +302,9 @@ class Follower:
         self,
         watch: Watch,
         assumed: Sequence[tuple[clingo.Symbol, bool]],
-        read: Callable[[clingo.Model], bool],
+        take: Callable[[clingo.Model], bool],
     ) -> None:
-        with self._control.solve(assumed, on_model=read, async_=True) as handle:
+        with self._control.solve(assumed, on_model=take, async_=True) as handle:
             while not handle.wait(0.1):
                 watch.tick()  # ends the call, if it raises
             handle.get()
@@ -330,100 +328,3 @@ def _go(node: Hypothesis, before: tuple[int, ...], at: tuple[int, ...]) -> None:
         node.undo()
     for arrival in at[common:]:
         node.enter(arrival)
-
-
-class _Boundaries(clingo.Propagator):
-    """Refuses, where ``bounded`` holds, maps in which a place is left and right of a path, or
-    on it and beside it (semantics: "Boundary consistency"), by the steps that make it so. As
-    links are added this stays so; a clause holds for all steps to come."""
-
-    def __init__(self, follower: Follower):
-        self._of = follower
-        self._at: list[list[tuple[int, int, int]]] = []  # by steps: place, slot, literal
-        self._bounded = 0
-
-    def init(self, init: clingo.PropagateInit) -> None:
-        """Learn the literals of ``at/3``."""
-        step = {visit: number for number, visit in enumerate(self._of.visits)}
-        self._at = [[] for _ in step]
-        for atom in init.symbolic_atoms.by_signature("at", 3):
-            visit, place, slot = (argument.number for argument in atom.symbol.arguments)
-            if visit in step:
-                literal = init.solver_literal(atom.literal)
-                self._at[step[visit]].append((place, slot, literal))
-        bounded = init.symbolic_atoms[_atom("bounded")]
-        self._bounded = init.solver_literal(bounded.literal) if bounded else -1
-        init.check_mode = clingo.PropagatorCheckMode.Total
-
-    def check(self, control: clingo.PropagateControl) -> None:
-        """Forbid what is wrong with the map that was found."""
-        true = control.assignment.is_true
-        if not true(self._bounded):
-            return
-        where = [next(one for one in of if true(one[2])) for of in self._at]
-        at = [(place, slot) for place, slot, _ in where]
-        seen = self._of.experience
-        for steps in crossed(seen.slots, seen.turns, at):
-            visits = {visit for step in steps for visit in (step - 1, step)}
-            nogood = [self._bounded, *(where[visit][2] for visit in sorted(visits))]
-            if not control.add_nogood(nogood):
-                return
-
-
-def crossed(slots: int, turns: Sequence[int], at: Sequence[DState]) -> list[set[int]]:
-    """Why the boundaries of a map are not consistent: sets of steps, the links of which make
-    it so, the smallest first."""
-    links: dict[Gateway, tuple[Gateway, int]] = {}
-    for step, (turn, (place, slot), arrival) in enumerate(zip(turns, at, at[1:], strict=False), 1):
-        out = place, (slot + turn) % slots
-        if out not in links:
-            links[out], links[arrival] = (arrival, step), (out, step)
-
-    def ray(gateway: Gateway) -> Iterator[tuple[Gateway, int]]:
-        """The arrivals, straight on, each with the step that made the link."""
-        while gateway in links:
-            arrival, step = links[gateway]
-            yield arrival, step
-            gateway = arrival[0], (arrival[1] + slots // 2) % slots
-
-    found: list[set[int]] = []
-    for end, slot in links:
-        # Each path once, from its end.
-        if (end, (slot + slots // 2) % slots) in links:
-            continue
-        path, by = [(end, slot)], []
-        for (place, entry), link in ray((end, slot)):
-            path.append((place, (entry + slots // 2) % slots))
-            by.append(link)
-        if path[-1] < path[0]:
-            continue
-        found += _sides(slots, path, by, ray)
-    return sorted(found, key=len)[:10]
-
-
-def _sides(
-    slots: int,
-    path: Sequence[Gateway],
-    by: Sequence[int],
-    ray: Callable[[Gateway], Iterator[tuple[Gateway, int]]],
-) -> Iterator[set[int]]:
-    """Why a place is at both sides of a path, or on it and beside it."""
-    on = {place: number for number, (place, _) in enumerate(path)}
-    beside: dict[Any, tuple[bool, int, list[int]]] = {}
-    for number, (place, heading) in enumerate(path):
-        for turn in range(1, slots):
-            if turn == slots // 2:
-                continue
-            used: list[int] = []
-            for (met, _), step in ray((place, (heading + turn) % slots)):
-                used.append(step)
-                right = turn < slots // 2
-                side, other, rest = beside.get(met, (right, number, []))
-                if met in on:
-                    other = on[met]
-                elif met not in beside:
-                    beside[met] = right, number, list(used)
-                    continue
-                elif side == right:
-                    continue
-                yield {*used, *rest, *by[min(number, other) : max(number, other)]}

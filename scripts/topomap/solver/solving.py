@@ -20,7 +20,7 @@ from typing import Any, ClassVar, TypeVar
 
 import clingo
 
-from topomap import __version__
+from topomap.runtime.version import VERSION
 from topomap.model.experience import Experience, Misread
 from topomap.model.found import Cube, Found
 from topomap.model.query import Query
@@ -316,11 +316,16 @@ def _assumed(cube: Cube) -> list[tuple[clingo.Symbol, bool]]:
     ]
 
 
+def digest(*experiences: Experience) -> str:
+    """What tells the program, its encodings and these experiences from other ones."""
+    texts = [_program_digest(), *(experience.facts() for experience in experiences)]
+    return hashlib.sha256("".join(texts).encode()).hexdigest() if experiences else texts[0]
+
+
 @cache
-def digest() -> str:
-    """What tells the program and its encodings from other ones."""
+def _program_digest() -> str:
     texts = [path.read_bytes() for path in sorted(ENCODINGS.rglob("*.lp"))]
-    return hashlib.sha256(b"".join([__version__.encode(), *texts])).hexdigest()
+    return hashlib.sha256(b"".join([VERSION.encode(), *texts])).hexdigest()
 
 
 def _prepare() -> None:

@@ -165,3 +165,17 @@ def by_bearing(
 
 def _link(links: dict[Gateway, Gateway], a: Gateway, b: Gateway) -> None:
     links[a], links[b] = b, a
+
+
+def environment(kind: str, rows: int, columns: int, thin: float = 0.3, seed: int = 0) -> Environment:
+    """The world of a kind: ``grid``, ``cylinder``, ``torus``, ``maze`` (a share ``thin`` of its
+    ways is taken away with the seed), ``hexagons`` or ``triangles``. Raises ValueError on others.
+    """
+    if kind == "maze":
+        return maze(rows, columns, thin, seed)
+    if kind in ("hexagons", "triangles"):
+        return lattice(kind, rows, columns)
+    if kind in ("grid", "cylinder", "torus"):
+        return grid(rows, columns, kind)
+    kinds = "grid, cylinder, torus, maze, hexagons, triangles"
+    raise ValueError(f"{kind!r} is not one of the environments {kinds}")

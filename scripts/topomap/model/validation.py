@@ -1,10 +1,9 @@
-"""``topomap validate``: all that is wrong with instances, and what looks like a mistake.
+"""All that is wrong with instances, and what looks like a mistake.
 
 Nothing is solved. The faults are those for which every command refuses an instance. Warnings are
 of instances that can be meant as they are, but seldom are.
 """
 
-import argparse
 from collections import defaultdict
 from collections.abc import Iterator
 from itertools import islice, pairwise
@@ -26,20 +25,7 @@ START = (
 )
 
 
-def validate(args: argparse.Namespace) -> int:
-    """Tell of each file what is wrong with it; status 2 if anything is."""
-    judged = [_judged(path) for path in args.file] if args.json else map(_judged, args.file)
-    if args.json:
-        print(formats.line({"files": judged}), end="")
-        return DONE if all(file["valid"] for file in judged) else BAD_INPUT
-    status = DONE
-    for file in judged:
-        print(*map(printable, _lines(file)), sep="\n", flush=True)
-        status = status if file["valid"] else BAD_INPUT
-    return status
-
-
-def _judged(path: str) -> dict[str, Any]:
+def judged(path: str) -> dict[str, Any]:
     """What is to be told of a file."""
     facts = Facts()
     told: dict[str, Any] = {"file": path, "valid": False}
@@ -71,7 +57,7 @@ def _json(fault: Fault, kind: str) -> dict[str, Any]:
     return {"line": fault.line, "step": fault.step, kind: fault.said}
 
 
-def _lines(file: dict[str, Any]) -> Iterator[str]:
+def lines(file: dict[str, Any]) -> Iterator[str]:
     """The same in lines to read."""
     name = file["file"]
     if file["valid"]:

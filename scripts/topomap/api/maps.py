@@ -1,0 +1,184 @@
+"""A map that was found, and what can be done with it."""
+
+import json
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from topomap.documents import answers
+from topomap.documents.maps import BEST
+from topomap.model.experience import DState, Experience, Misread
+from topomap.model.found import UNPROVED, Found
+from topomap.model.topology import Gateway, Place, TopologicalMap
+from topomap.model.words import markers
+
+if TYPE_CHECKING:
+    from networkx import MultiGraph
+
+    from topomap.drawing.scenes import Scene
+
+
+class Map:
+    """A hypothesis: a topological map, and the way of the agent in it (the paper, sections II
+    and III).
+
+    A place is the number of the step in which the agent was there first; a gateway is a pair
+    ``(place, slot)``, slots counted clockwise from 0 to ``slots - 1``. Nothing of a map can be
+    changed. Two maps of one experience are equal if the agent is at the same place and gateway
+    after each step, and the same is disbelieved; in a notebook a map is shown as a drawing.
+    """
+
+    def __init__(
+        self,
+        experience: Experience,
+        found: Found,
+        number: int = 1,
+        many: int = 1,
+        whole: bool = False,
+        *,
+        name: str = "",
+        noisy: bool = False,
+    ):
+        """The map of what was found in an experience: the ``number``-th of ``many``, which are
+        all that there are if ``whole``. ``name`` says where the experience is from; ``noisy``
+        tells that views were allowed to be wrong, as ``json`` then says which were."""
+        self._seen, self._found = experience, found
+        self._number, self._many, self._whole = number, many, whole
+        self._name, self._noisy = name, noisy
+
+    @cached_property
+    def _corrected(self) -> Experience:
+        return self._seen.corrected(self._found.misread)
+
+    @cached_property
+    def _world(self) -> TopologicalMap:
+        return self._corrected.map_of(self._found.at)
+
+    @property
+    def slots(self) -> int:
+        """The number of directions at each place."""
+        return self._seen.slots
+
+    @property
+    def places(self) -> dict[Place, list[int]]:
+        """The gateways of each place: their slots, in order."""
+        return {place: sorted(star) for place, star in self._world.stars.items()}
+
+    @property
+    def landmarks(self) -> dict[Place, list[str]]:
+        """The landmarks of each place, in order, as the instance writes them."""
+        return {place: sorted(self._world.landmarks[place]) for place in self._world.stars}
+
+    @property
+    def links(self) -> list[tuple[Gateway, Gateway]]:
+        """Each link once, as its two gateways."""
+        return self._world.edges()
+
+    @property
+    def paths(self) -> list[list[Gateway]]:
+        """Each path as its places in order, each with the slot in which it is left ahead."""
+        return self._world.paths()
+
+    @property
+    def faces(self) -> list[list[Gateway]]:
+        """Each face as the gateways by which a walk round it leaves; one empty face if there
+        are no links (the paper, Figure 3)."""
+        return self._world.faces()
+
+    @property
+    def genus(self) -> int:
+        """The genus: 0 if the map is planar."""
+        return self._world.genus()
+
+    @property
+    def pending(self) -> list[Gateway]:
+        """The gateways without a link (the paper, section III.B)."""
+        return self._world.pending()
+
+    @property
+    def at(self) -> tuple[DState, ...]:
+        """The dstate after each step, from 0: the place where the agent is, and the gateway
+        where it stands."""
+        return self._found.at
+
+    @property
+    def kind(self) -> str:
+        """What the map is: "consistent"; "best" or "optimal", which is said of no map of which
+        it is not proved; "best so far", if no closed map is consistent; or "not proved to be
+        best"."""
+        unproved = not self.proved and self._found.kind in ("best", *BEST)
+        return UNPROVED if unproved else self._found.kind
+
+    @property
+    def cost(self) -> tuple[int, ...]:
+        """What was minimised, most important first; empty if nothing was."""
+        return self._found.cost
+
+    @property
+    def proved(self) -> bool:
+        """Whether it is proved that no map costs less."""
+        return self._found.proved
+
+    @property
+    def misread(self) -> tuple[Misread, ...]:
+        """What the map disbelieves: of each misreading the step, and the gateway (a slot
+        clockwise of the gateway stood at) or landmark that was missed or imagined."""
+        return self._found.misread
+
+    def to_networkx(self) -> "MultiGraph[int]":
+        """The map as a graph of networkx, the same that ``topomap export`` writes.
+
+        A node is a place, with its ``gateways`` and ``landmarks``; an edge is a link, with its
+        ``ends`` (two gateways) and the ``steps`` that travel it from the first to the second,
+        and ``back``. Of the graph ``at`` is ``[[T, P, S], ...]``.
+        """
+        from topomap.exchange.exports import graph_of
+
+        return graph_of(self._scene())
+
+    def draw(self, file: str | Path) -> None:
+        """Draw the map into a file, which is SVG, PNG or PDF by the ending of its name: the same
+        bytes for the same map. Raises InputError, one line, if it has another ending, cannot be
+        written, or the extra ``draw`` is not installed."""
+        from topomap.api.draw import save
+
+        save(self._scene(), file)
+
+    def _repr_svg_(self) -> str | None:
+        """What a notebook shows; without the extra ``draw`` it shows the line of ``repr``."""
+        from topomap.api.draw import svg
+        from topomap.runtime.extras import lacking
+
+        return None if lacking("draw") else svg(self._scene())
+
+    def json(self) -> dict[str, Any]:
+        """The map as ``topomap solve --json`` writes it (``docs/formats.md`` names the keys)."""
+        told = answers.map_json(self._world, self.at)
+        if self._noisy or self.misread:
+            told["misread"] = answers.misread_json(self._seen, self.misread)
+        plain: dict[str, Any] = json.loads(json.dumps(told))
+        return plain
+
+    def _scene(self) -> "Scene":
+        from topomap.drawing.scenes import Scene
+
+        return Scene(
+            *(self._world, self.at, self._name, self._number, self._many, self.kind),
+            whole=self._whole,
+            marker=markers(self._corrected, self.at),
+        )
+
+    def __str__(self) -> str:
+        """The line that ``topomap solve`` prints."""
+        return f"map {self._number}: {answers.map_line(self._corrected, self._found)}"
+
+    def __repr__(self) -> str:
+        return f"<{self.kind} {self}>"
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Map):
+            return NotImplemented
+        return (self.at, self.misread) == (other.at, other.misread)
+
+    def __hash__(self) -> int:
+        return hash((self.at, self.misread))

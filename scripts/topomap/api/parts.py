@@ -1,0 +1,53 @@
+"""The parts of the theory, as keyword arguments of the public functions."""
+
+import difflib
+from collections.abc import Collection, Mapping
+from typing import TypedDict
+
+from topomap.model.query import Query
+from topomap.model.vocabulary import PARTS
+
+
+class Parts(TypedDict, total=False):
+    """What maps are to have (the paper, sections II to IV). Each is a part of ``encodings/``:
+
+    ``planar``: a new link joins two gateways of one face; ``euler``: the same, by Euler's
+    formula; ``closed``: no gateway is pending; ``travelled``: every path holds two places or
+    more; ``boundary``: no place is left and right of a path, or on it and beside it;
+    ``perpendicular``: two paths meet once at most, and no three make a triangle; ``genus``:
+    the least genus is preferred; ``minimal``: the fewest paths are preferred, then the fewest
+    places.
+    """
+
+    planar: bool
+    euler: bool
+    closed: bool
+    travelled: bool
+    boundary: bool
+    perpendicular: bool
+    genus: bool
+    minimal: bool
+
+
+def query_of(
+    parts: Mapping[str, object],
+    *,
+    bound: int | None = None,
+    horizon: int | None = None,
+    encoding: str = "fast",
+    noise: int | None = None,
+    allowed: Collection[str] = tuple(PARTS),
+) -> Query:
+    """The query that asks for the parts that are true. Raises ValueError, naming the known ones,
+    if one is not among those that are allowed."""
+    for part in parts:
+        if part not in allowed:
+            near = difflib.get_close_matches(part, allowed, 1)
+            hint = f"; did you mean {near[0]}?" if near else ""
+            known = ", ".join(allowed)
+            raise ValueError(f"{part!r} is not one of the parts {known}{hint}")
+    for name, value, least in (("bound", bound, 1), ("horizon", horizon, 0), ("noise", noise, 0)):
+        if value is not None and value < least:
+            raise ValueError(f"{name}={value}: it must be {least} or more")
+    asked = frozenset(part for part, value in parts.items() if value)
+    return Query(asked, bound, horizon, encoding, noise)

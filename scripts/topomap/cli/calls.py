@@ -1,0 +1,56 @@
+"""What several subcommands make of their arguments."""
+
+import argparse
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Any
+
+from topomap.model.vocabulary import OPTIMIZING, PARTS
+from topomap.runtime.errors import InputError, say
+from topomap.runtime.limits import MOST_PLACES
+
+if TYPE_CHECKING:
+    from topomap.model.experience import Experience
+    from topomap.solver.share import Crew
+    from topomap.worlds.environment import Environment
+
+
+def parts_of(args: argparse.Namespace, of: Iterable[str] = PARTS) -> dict[str, bool]:
+    """The parts that are asked for."""
+    return {part: True for part in of if getattr(args, part, False)}
+
+
+def crew_of(args: argparse.Namespace) -> "Crew":
+    """Those who do the work."""
+    from topomap.solver.share import crew
+
+    shared = (args.jobs or 1) > 1 or args.dask
+    if shared and (getattr(args, "optimal", False) or OPTIMIZING & set(parts_of(args))):
+        raise InputError("topomap solve: --jobs and --dask share out all maps, not the best ones")
+    return crew(args.jobs or 1, args.dask)
+
+
+def run_of(args: argparse.Namespace, *experiences: "Experience") -> dict[str, Any]:
+    """What a run that writes to a file computes: its journal goes on with no other one."""
+    if args.output is None:
+        return {}
+    from topomap.solver.solving import digest
+
+    keys = ("by", "encoding", *PARTS, "optimal", "bound", "horizon")
+    asked = {key: getattr(args, key, None) for key in keys}
+    return {"command": args.command, **asked, "facts and encodings": digest(*experiences)}
+
+
+def environment_of(args: argparse.Namespace) -> "Environment":
+    """The environment that a call of ``generate`` or ``simulate`` names."""
+    from topomap.worlds import environment, network
+
+    if args.kind == "network":
+        world, warnings = network.load(args.file, args.slots, args.north)
+        for warning in warnings:
+            say(f"warning: {warning}")
+        return world
+    if args.rows * args.columns > MOST_PLACES:
+        size = f"{args.rows} x {args.columns}"
+        raise InputError(f"topomap {args.command}: {size}: more than {MOST_PLACES} places")
+    thinned = {"thin": args.thin, "seed": args.seed or 0} if args.kind == "maze" else {}
+    return environment.environment(args.kind, args.rows, args.columns, **thinned)

@@ -1,0 +1,199 @@
+"""What is wrong with maps, by two checkers, and whether they are what is said of them."""
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from topomap.documents.check import STEP_RULES, At, Grown, Violation, by_definition, by_rules
+from topomap.documents.maps import (
+    BEST_FIRST,
+    LONGER,
+    Document,
+    is_number,
+    list_of,
+    misread_of,
+)
+from topomap.model import words
+from topomap.model.experience import Experience, Misread
+from topomap.model.topology import Gateway, TopologicalMap
+from topomap.runtime.errors import InputError
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """What is wrong with a map: rules broken, with steps, and other faults in words."""
+
+    where: str
+    violations: list[Violation]
+    faults: list[str]
+    short: bool = False  # the map is of part of the steps
+
+    @property
+    def sound(self) -> bool:
+        return not self.violations and not self.faults
+
+
+def verdicts(
+    seen: Experience,
+    documents: list[Document],
+    demands: Sequence[str],
+    truth: TopologicalMap | None,
+    noise: int | None = None,
+) -> Iterator[Verdict]:
+    """A verdict on each map, by ``check.lp`` and by definition, of what was seen but for what
+    the map says was misread: after ``noise`` steps at most, and as many as its document allows.
+    Raises InputError if one is much longer than the experience."""
+    for document in documents:
+        for number, entry in enumerate(document.maps, 1):
+            if len(entry["at"]) > LONGER * (seen.steps + 1):
+                fault = f"at has {len(entry['at'])} dstates, the instance {seen.steps + 1}"
+                raise InputError(f"{document.where}: map {number}: {fault}")
+    for document in documents:
+        wanted = sorted({*demands, *document.demands()})
+        numbers: dict[tuple[At, frozenset[Misread]], int] = {}
+        bounds = [k for k in (noise, document.claims.get("noise")) if k is not None]
+        for number, entry in enumerate(document.maps, 1):
+            at = tuple(sorted((step, place, slot) for step, place, slot in entry["at"]))
+            rules: set[Violation] = set()
+            definition: set[Violation] = set()
+            found = []
+            try:
+                misread = misread_of(seen, entry)
+                experience = seen.corrected(misread)
+                found = list(_mistaken(experience, misread, len(at), min(bounds, default=None)))
+            except (LookupError, TypeError, ValueError):
+                misread, found = frozenset(), ["misread: not what topomap solve --json writes"]
+            if not found:
+                rules = by_rules(experience, at, wanted)
+                definition = by_definition(experience, at, wanted)
+            if not found and not STEP_RULES & {rule for rule, _ in rules | definition}:
+                found = list(faults(experience, document, entry, at))
+                if rules != definition:
+                    found.append("check.lp and the check by definition do not agree on it")
+                if truth and "real" in entry:
+                    real = experience.map_of(tuple((p, s) for _, p, s in at)).isomorphic(truth)
+                    if real != entry["real"]:
+                        found.append(f"real: it is {'not ' * (not real)}the real map")
+            if numbers.setdefault((at, misread), number) != number:
+                found.append(f"the same as map {numbers[at, misread]}")
+            violations = sorted(rules | definition, key=lambda violation: violation[::-1])
+            said = document.claims.get("count", len(document.maps))
+            if number == 1 and said != len(document.maps):
+                found.append(f"count is {said}, there are {len(document.maps)} maps")
+            if truth is None and "real" in entry:
+                found.append("real: only --truth can tell")
+            short = len(at) <= seen.steps
+            yield Verdict(f"{document.where}: map {number}", violations, found, short)
+
+
+def _mistaken(
+    corrected: Experience, misread: frozenset[Misread], steps: int, most: int | None
+) -> Iterator[str]:
+    """What is wrong with what is said to be misread, in a map of so many steps."""
+    wrong = {step for step, _ in misread}
+    if wrong and most is None:
+        yield "misread: it is not said how many views may be wrong (noise)"
+    elif len(wrong) > (most or 0):
+        yield f"misread: {words.number(len(wrong), 'view')}, more than {most}"
+    if late := [step for step in wrong if step >= steps]:
+        yield f"misread: step {min(late)} is not in at"
+    if left := corrected.cut(max(0, steps - 1)).misled():
+        yield f"misread: the agent still stands at no gateway or leaves by none, step {left[0]}"
+
+
+def faults(
+    experience: Experience, document: Document, entry: dict[str, Any], at: At
+) -> Iterator[str]:
+    """What is said of a map, by itself or with the others, and does not follow from ``at``."""
+    grown = Grown(experience, {step: (place, slot) for step, place, slot in at}, len(at) - 1)
+    for key, said in entry.items():
+        if key in ("at", "real", "misread"):
+            continue
+        if key not in KEYS:
+            yield f"{key}: no such key of a map"
+            continue
+        try:
+            same = KEYS[key](grown, experience, said)
+        except (LookupError, TypeError, ValueError):
+            same = False
+        if not same:
+            yield f"{key}: not what at says"
+    claims = document.claims
+    last = claims.get("horizon")
+    if "horizon" in claims and grown.step != (
+        experience.steps if last is None else min(last, experience.steps)
+    ):
+        yield f"horizon: at ends after step {grown.step}"
+    cost = _noise(entry, claims) + _cost(grown, claims)
+    if "cost" in claims and claims["cost"] != cost:
+        yield f"cost: it is {cost}"
+
+
+def _noise(entry: dict[str, Any], claims: dict[str, Any]) -> list[int]:
+    """How many views are wrong, and how much was misread, if that was minimised."""
+    misread = entry.get("misread", [])
+    return [] if claims.get("noise") is None else [len({m["step"] for m in misread}), len(misread)]
+
+
+def _cost(grown: Grown, claims: dict[str, Any]) -> list[int]:
+    """What was minimised, most important first."""
+    parts = claims.get("parts", ())
+    minimal = "minimal" in parts or claims.get("optimal") or claims.get("kind") == BEST_FIRST
+    genus = [grown.genus()] if "genus" in parts else []
+    return genus + ([len(grown.paths()), len(grown.stars)] if minimal else [])
+
+
+def _places(grown: Grown, experience: Experience, said: Any) -> bool:
+    def in_order(places: Any) -> list[dict[str, Any]]:
+        numbers = (number for place in places for number in (place["place"], *place["gateways"]))
+        if not all(map(is_number, numbers)):
+            raise ValueError
+        lists = ("gateways", "landmarks")
+        ordered = [{**place, **{key: sorted(place[key]) for key in lists}} for place in places]
+        return sorted(ordered, key=lambda place: int(place["place"]))
+
+    ours = [
+        {"place": place, "gateways": star, "landmarks": list(experience.landmarks[place])}
+        for place, star in grown.stars.items()
+    ]
+    return in_order(list_of(said)) == in_order(ours)
+
+
+def _links(grown: Grown, _: Experience, said: Any) -> bool:
+    ours = {tuple(sorted(link)) for link in grown.links.items()}
+    return sorted(tuple(sorted(_gateways(link))) for link in list_of(said)) == sorted(ours)
+
+
+def _paths(grown: Grown, _: Experience, said: Any) -> bool:
+    return sorted(grown.one_way(_gateways(path)) for path in list_of(said)) == grown.paths()
+
+
+def _faces(grown: Grown, _: Experience, said: Any) -> bool:
+    def from_least(face: list[Gateway]) -> list[Gateway]:
+        start = face.index(min(face)) if face else 0
+        return face[start:] + face[:start]
+
+    ours = sorted(map(from_least, grown.faces()))
+    return sorted(from_least(_gateways(face)) for face in list_of(said)) == ours
+
+
+def _gateways(said: Any) -> list[Gateway]:
+    return [_gateway(gateway) for gateway in list_of(said)]
+
+
+def _gateway(said: Any) -> Gateway:
+    place, slot = list_of(said)
+    if not (is_number(place) and is_number(slot)):
+        raise ValueError
+    return place, slot
+
+
+KEYS: dict[str, Callable[[Grown, Experience, Any], bool]] = {
+    "places": _places,
+    "links": _links,
+    "paths": _paths,
+    "faces": _faces,
+    "genus": lambda grown, _, said: is_number(said) and grown.genus() == said,
+    "pending": lambda grown, _, said: sorted(_gateways(said)) == sorted(grown.pending()),
+    "dstate": lambda grown, _, said: _gateway(said) == grown.dstate,
+}

@@ -1,0 +1,92 @@
+"""Every map of a query, by either way: at once, or part by part of the tree, each part a unit
+of a journal, alone or shared out."""
+
+from array import array
+from collections.abc import Iterator
+from functools import partial
+
+from topomap.model.experience import Experience
+from topomap.model.found import Cube, Found
+from topomap.model.query import Query
+from topomap.runtime.journal import Journal
+from topomap.runtime.limits import LARGEST
+from topomap.runtime.watch import Watch
+from topomap.search import traversal
+from topomap.solver import solving
+from topomap.solver.share import ALONE, Crew
+from topomap.solver.solving import Way
+
+WAYS: dict[str, Way] = {"clingo": solving.hypotheses, "search": traversal.hypotheses}
+
+
+def every(
+    experience: Experience,
+    query: Query,
+    watch: Watch,
+    by: str = "clingo",
+    optimal: bool = False,
+    journal: Journal | None = None,
+    crew: Crew = ALONE,
+) -> Iterator[Found]:
+    """The maps of a query, or the best of them if ``optimal`` (better and better ones come
+    before those that are proved); ``by`` is one of WAYS. If there is a journal or a crew, and
+    nothing is minimised, part by part of the tree. Raises Stopped."""
+    journal = journal or Journal()
+    way = WAYS[by]
+    if optimal:
+        yield from filter(None, solving.best(experience, query, watch, way))
+    elif query.optimizes or (crew is ALONE and not journal.kept):
+        yield from filter(None, way(experience, query, watch))
+    else:
+        parts, depth = traversal.cubes(experience, query)
+        done = 0
+        known: set[Cube] = set()  # the maps of the part that was cut
+        with watch.deadline.waiting():
+            for value in journal.recorded(len(parts)):
+                watch.tick()
+                if value is None:
+                    known.clear()
+                    done += 1
+                else:
+                    at = tuple((place, slot) for place, slot in value)
+                    known.add(at)
+                    watch.found += 1
+                    yield Found(at, query.kind)
+        if by == "clingo":
+            solving.demand_cover(experience, query, watch, parts, depth)
+        if crew is ALONE:
+            left = way(experience, query, watch, cubes=parts[done:])
+        else:
+            left = _shared(crew, way, experience, query, watch, parts[done:])
+        for found in left:
+            if found is None:
+                known.clear()
+                journal.commit()
+            elif found.at not in known:
+                journal.add(found.at)
+                yield found
+
+
+def _shared(
+    crew: Crew, way: Way, experience: Experience, query: Query, watch: Watch, cubes: list[Cube]
+) -> Iterator[Found | None]:
+    """What a way gives, by a crew."""
+    steps = experience.cut(LARGEST if query.horizon is None else query.horizon).steps
+    for numbers in crew.each(partial(_numbers, way, experience, query), cubes, watch):
+        dstates = list(zip(numbers[::2], numbers[1::2], strict=True))
+        watch.found += len(dstates) // (steps + 1)
+        for start in range(0, len(dstates), steps + 1):
+            yield Found(tuple(dstates[start : start + steps + 1]), query.kind)
+        yield None
+
+
+def _numbers(
+    way: Way, experience: Experience, query: Query, cube: Cube, watch: Watch | None
+) -> "array[int]":
+    """The maps that begin with a cube, as places and gateways in a row: a third of the memory
+    that they take as maps."""
+    numbers = array("i")
+    for found in way(experience, query, watch or Watch(), cubes=[cube]):
+        for dstate in found.at if found else ():
+            numbers.extend(dstate)
+    return numbers
