@@ -19,8 +19,8 @@ BIN     := .venv/bin
 SETUP   := .venv/set-up
 TOOLS   := .venv/tools
 BATCH   := build/instances
-MAKERS  := $(addprefix scripts/topomap/,environment.py experience.py generate.py network.py \
-             route.py topology.py)
+MAKERS  := $(wildcard scripts/topomap/worlds/*.py) $(addprefix scripts/topomap/model/, \
+             experience.py topology.py)
 PIP     := $(BIN)/python -m pip --quiet --disable-pip-version-check
 
 .PHONY: all table instances batch test test-long mutate lint figures bench beyond simulate clean \
@@ -86,6 +86,7 @@ lint: $(TOOLS)
 	$(BIN)/ruff check scripts tests
 	$(BIN)/ruff format --check scripts tests
 	$(BIN)/mypy
+	$(BIN)/lint-imports
 
 GENERATE  := $(BIN)/topomap generate
 MANHATTAN := network "$(MAPS)/manhattan.graphml" --slots 4 --north 29 --route tour

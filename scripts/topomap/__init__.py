@@ -1,3 +1,81 @@
-"""topomap: exact topological map-building in answer set programming."""
+"""topomap: exact topological map-building in answer set programming.
 
-__version__ = "0.2.0"
+    import topomap
+
+    seen = topomap.read("grid-3x3-snake.lp")
+    answer = topomap.solve(seen, planar=True, optimal=True, timeout=60)
+    answer[0].draw("map.svg")
+
+The functions and classes below are the public ones; each is loaded when it is first used. What
+is in the packages beside them may change without notice: docs/DEVELOPMENT.md walks through them.
+"""
+
+from typing import TYPE_CHECKING, Any
+
+from topomap.runtime.version import VERSION as __version__
+
+if TYPE_CHECKING:
+    from topomap.api.ask import ask
+    from topomap.api.check import check
+    from topomap.api.count import count
+    from topomap.api.explain import explain
+    from topomap.api.explore import explore
+    from topomap.api.follow import follow
+    from topomap.api.generate import generate
+    from topomap.api.maps import Map
+    from topomap.api.read import read
+    from topomap.api.simulate import simulate
+    from topomap.api.solve import Answer, solve
+    from topomap.api.validate import validate
+    from topomap.model.experience import Experience
+    from topomap.runtime.errors import InputError
+
+_WHERE = {
+    "Answer": "api.solve",
+    "Experience": "model.experience",
+    "InputError": "runtime.errors",
+    "Map": "api.maps",
+    "ask": "api.ask",
+    "check": "api.check",
+    "count": "api.count",
+    "explain": "api.explain",
+    "explore": "api.explore",
+    "follow": "api.follow",
+    "generate": "api.generate",
+    "read": "api.read",
+    "simulate": "api.simulate",
+    "solve": "api.solve",
+    "validate": "api.validate",
+}
+__all__ = [
+    "Answer",
+    "Experience",
+    "InputError",
+    "Map",
+    "__version__",
+    "ask",
+    "check",
+    "count",
+    "explain",
+    "explore",
+    "follow",
+    "generate",
+    "read",
+    "simulate",
+    "solve",
+    "validate",
+]
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _WHERE:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    from importlib import import_module
+
+    value = getattr(import_module(f"topomap.{_WHERE[name]}"), name)
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)

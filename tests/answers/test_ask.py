@@ -15,7 +15,7 @@ from topomap.documents.check import by_definition, by_rules
 from topomap.model.experience import parse, read
 from topomap.model.query import Query
 from topomap.questions import ask, statements
-from topomap.questions.ask import Answers
+from topomap.questions.ask import Inquiry
 from topomap.runtime.errors import InputError
 from topomap.runtime.watch import Stopped, Watch
 from topomap.solver.solving import FORMS, forget, hypotheses
@@ -53,7 +53,7 @@ def statement(draw, experience):
 
 def settled(experience, texts, query=ANY, optimal=False):
     """What the command finds."""
-    answers = Answers([statements.parse(text, experience, "ask") for text in texts])
+    answers = Inquiry([statements.parse(text, experience, "ask") for text in texts])
     answers.settle(experience, query, optimal, Watch())
     return answers
 
@@ -365,7 +365,7 @@ class Impatient(Watch):
 def test_what_is_not_settled_says_so():
     experience = GRIDS["3x3-snake"]
     texts = ["same(0,16)", "not same(0,16)", "planar", "places >= 1"]
-    answers = Answers([statements.parse(text, experience, "ask") for text in texts])
+    answers = Inquiry([statements.parse(text, experience, "ask") for text in texts])
     assert {answer.words() for answer in answers.each} == {"not settled"}
     with pytest.raises(Stopped):
         answers.settle(experience, Query(), False, Impatient(1))

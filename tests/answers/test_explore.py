@@ -19,7 +19,8 @@ from topomap.model.experience import explore as experienced
 from topomap.model.experience import read
 from topomap.model.query import Query
 from topomap.questions import explore
-from topomap.questions.explore import Standing, plan, predict, tells
+from topomap.questions.explore import plan
+from topomap.questions.standings import Standing, predict, tells
 from topomap.runtime.watch import Watch
 from topomap.solver.solving import hypotheses
 from topomap.worlds.environment import EAST, grid

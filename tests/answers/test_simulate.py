@@ -6,7 +6,6 @@ import random
 import pytest
 from conftest import ROOT, TRIED
 from oracles.worlds import random_world
-from topomap import simulating
 from topomap.model.experience import explore, read
 from topomap.model.query import Query
 from topomap.questions import robot
@@ -269,7 +268,7 @@ def test_the_table_is_what_comes_out(topomap, tmp_path, call):
 
 def test_the_page_has_the_table():
     rows = json.loads((ROOT / "docs/simulations.json").read_text())["rows"]
-    assert f"```text\n{simulating.table(rows)}```" in (ROOT / "docs/robots.md").read_text()
+    assert f"```text\n{robot.table(rows)}```" in (ROOT / "docs/robots.md").read_text()
     listed = [" ".join(call) for _, call in expand(ROOT / "instances/worlds.txt")]
     assert [row["environment"] for row in rows] == listed
     assert len(rows) == 20

@@ -21,7 +21,7 @@ from typing import Any
 from oracles import walks
 from topomap.model.experience import DState, read
 from topomap.model.query import Query
-from topomap.questions.explore import Standing
+from topomap.questions.standings import Standing
 from topomap.runtime.files import output
 from topomap.runtime.watch import Watch
 from topomap.search import traversal

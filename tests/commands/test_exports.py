@@ -22,8 +22,9 @@ from conftest import ROOT, TRIED, lacking, run
 from oracles.worlds import WORLDS, random_experience, random_world
 from topomap.documents import maps
 from topomap.documents.answers import map_json
+from topomap.documents.verdicts import verdicts
 from topomap.drawing.scenes import Scene
-from topomap.exchange import exports
+from topomap.exchange import exports, imports
 from topomap.model.experience import Experience, explore, read
 from topomap.model.query import Query
 from topomap.model.topology import gid
@@ -72,7 +73,7 @@ def returned(tmp_path, scene, form):
     """What import makes of an export."""
     file = tmp_path / f"map.{form}"
     file.write_text(READ_BACK[form](scene), encoding="utf-8")
-    return json.loads(exports.read(str(file)))
+    return json.loads(imports.import_map(str(file)))
 
 
 def agrees(tmp_path, seen, scene):
@@ -83,9 +84,9 @@ def agrees(tmp_path, seen, scene):
         assert entry == json.loads(json.dumps(map_json(scene.world, scene.at)))
         assert document["slots"] == seen.slots
         assert document["instance"] == scene.name
-    (verdict,) = maps.verdicts(seen, [maps.document("made", document)], [], None)
+    (verdict,) = verdicts(seen, [maps.document("made", document)], [], None)
     original = json.loads(json.dumps({"maps": [map_json(scene.world, scene.at)]}))
-    assert [verdict] == list(maps.verdicts(seen, [maps.document("made", original)], [], None))
+    assert [verdict] == list(verdicts(seen, [maps.document("made", original)], [], None))
     assert not verdict.short
     return verdict.sound
 
@@ -441,7 +442,7 @@ def test_foreign_and_broken_files_are_refused(tmp_path, name):
     file = tmp_path / "map"
     file.write_text(text)
     with pytest.raises(InputError, match=fault) as error:
-        exports.read(str(file))
+        imports.import_map(str(file))
     assert str(error.value).startswith(f"{file}: ")
     assert "\n" not in str(error.value)
 
@@ -456,7 +457,7 @@ def test_what_other_tools_add_is_left_out(tmp_path):
             part.update(x=number, label="a")
 
     file.write_text(spoilt(painted))
-    assert json.loads(exports.read(str(file))) == returned(tmp_path, scene, "json")
+    assert json.loads(imports.import_map(str(file))) == returned(tmp_path, scene, "json")
 
 
 def test_the_commands(topomap, tmp_path):

@@ -16,7 +16,8 @@ from oracles.brute_force import certain
 from oracles.worlds import marks, random_experience
 from topomap.model.experience import explore, parse, read
 from topomap.model.query import Query
-from topomap.questions.follow import Record, decoded
+from topomap.questions.lines import decoded
+from topomap.questions.records import Record
 from topomap.runtime.errors import InputError
 from topomap.search.traversal import depth_first, root
 from topomap.worlds.environment import EAST, grid
@@ -52,7 +53,7 @@ def follow(topomap, text, *arguments, status=0):
 def recorded(lines):
     record = Record()
     for number, line in enumerate(lines, 1):
-        record = record.read(line, "x", number)
+        record = record.with_line(line, "x", number)
     return record
 
 
@@ -240,7 +241,7 @@ BAD = [
 def test_a_bad_line_is_refused(line, fault):
     begun = recorded(LINES[:3])
     with pytest.raises(InputError) as refused:
-        begun.read(decoded(line.encode(), "x", 4), "x", 4)
+        begun.with_line(decoded(line.encode(), "x", 4), "x", 4)
     assert str(refused.value).startswith("x:4: ")
     assert fault in str(refused.value)
     assert "\n" not in str(refused.value)
@@ -464,6 +465,6 @@ def test_any_lines_are_read_or_refused(lines):
     record = recorded(LINES[:2])
     for line in lines:
         with contextlib.suppress(InputError):
-            record = record.read(line, "x", 3)
+            record = record.with_line(line, "x", 3)
     whole = record.whole()
     assert of_record(record).steps == len(whole) - 1

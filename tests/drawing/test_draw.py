@@ -19,7 +19,8 @@ import pytest
 from conftest import ROOT, run
 from defusedxml import ElementTree
 from oracles.worlds import WORLDS, random_experience
-from topomap.drawing import draw
+from topomap.api.draw import FORMATS
+from topomap.drawing import panel, sheet
 from topomap.drawing.layout import layout
 from topomap.drawing.planarize import lacking, planar_part, routed
 from topomap.drawing.scenes import Scene
@@ -27,7 +28,6 @@ from topomap.model import words
 from topomap.model.experience import read
 from topomap.model.query import Query
 from topomap.model.topology import TopologicalMap, gid, label
-from topomap.pictures import FORMATS
 from topomap.runtime.watch import Watch
 from topomap.search import traversal
 from topomap.worlds.environment import grid, lattice
@@ -36,7 +36,7 @@ from topomap.worlds.instance import instance
 QUIET = Watch()
 GRID = "instances/grid-3x3-snake.lp"
 NUMBER = r"-?\d+(?:\.\d+)?"
-RADIUS = draw.RADIUS * draw.UNIT * 72  # of a place, in the units of a picture
+RADIUS = panel.RADIUS * panel.UNIT * 72  # of a place, in the units of a picture
 ODD = ['"$x^$_{"', 'f("a$b")', '"日本"', '"\t"', f'"{"W" * 200}"', '"😀"', '"a\\"b"', '"$"']
 SHOWN = ["$x^$_{", 'f("a$b")', "日本", "\\t", "W" * 15 + "…", "😀", 'a"b', "$"]
 
@@ -63,7 +63,7 @@ def lines_of(scene):
     """The lines in the picture of a map: of each gateway the one that leaves by it, y upwards;
     and the identifiers of all that is drawn."""
     file = BytesIO()
-    draw.save(draw.picture([scene]), file, "svg")
+    sheet.save(sheet.picture([scene]), file, "svg")
     groups = ElementTree.fromstring(file.getvalue()).iter("{http://www.w3.org/2000/svg}g")
     drawn = {group.get("id"): group for group in groups if group.get("id")}
     lines = {}
@@ -351,7 +351,7 @@ def test_faces_are_round_their_numbers():
             x, y = outline.T
             area = (x * np.roll(y, -1) - np.roll(x, -1) * y).sum() / 2
             assert (area >= -1e-9) if index == laid.outer else (area < 0)
-        (axes,) = draw.picture([scene]).axes
+        (axes,) = sheet.picture([scene]).axes
         at = {text.get_gid(): text.get_position() for text in axes.texts}
         shades = {patch.get_gid(): patch.get_path() for patch in axes.patches}
         for index in range(1, len(laid.faces) + 1):
@@ -365,8 +365,8 @@ def test_steps_are_on_the_right_of_their_ways(number):
     scene = some_map(number)
     world = scene.world
     laid = layout(world, scene.ahead)
-    (axes,) = draw.picture([scene]).axes
-    at = {t.get_text(): t.get_position() for t in axes.texts if t.get_color() == draw.STEP}
+    (axes,) = sheet.picture([scene]).axes
+    at = {t.get_text(): t.get_position() for t in axes.texts if t.get_color() == panel.STEP}
     ways = scene.steps()
     assert sorted(step for steps in ways.values() for step in steps) == list(
         range(1, len(scene.at))
@@ -453,7 +453,7 @@ def test_no_text_is_cut_off(tmp_path, name):
     at = tuple((step, 0) for step in range(experience.steps + 1))
     scenes = [Scene(experience.map_of(at), at, f"there/{name}.lp", kind="odd " * 30)]
     for several in (scenes, scenes * 5):
-        figure = draw.picture(several)
+        figure = sheet.picture(several)
         place(figure)
         width, height = figure.bbox.size
         boxes = [axes.title.get_window_extent() for axes in figure.axes]
@@ -481,7 +481,7 @@ def test_landmarks_are_in_the_widest_gap():
     named = TopologicalMap(
         4, world.stars, world.links, {p: frozenset({f'"{label(p)} sign"'}) for p in world.stars}
     )
-    figure = draw.picture([Scene(named, (), "signs")])
+    figure = sheet.picture([Scene(named, (), "signs")])
     place(figure)
     (axes,) = figure.axes
     boxes = {
@@ -504,7 +504,7 @@ def test_landmarks_are_in_the_widest_gap():
 def test_titles_tell_how_many_links_cross():
     scene = next(s for s in (some_map(n) for n in range(10)) if s.world.genus() > 0)
     crossing = len(layout(scene.world).crossing)
-    (axes,) = draw.picture([scene]).axes
+    (axes,) = sheet.picture([scene]).axes
     told = "1 link crosses" if crossing == 1 else f"{crossing} links cross"
     title = " ".join(axes.get_title().split())
     assert title.endswith(f"genus {scene.world.genus()}, {told} others")

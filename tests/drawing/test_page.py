@@ -21,14 +21,15 @@ from matplotlib.path import Path as Outline
 from oracles import brute_force as oracle
 from oracles.worlds import WORLDS, random_experience
 from topomap import cli
-from topomap.drawing import svg
+from topomap.drawing import shapes, svg
 from topomap.drawing.agreement import Agreement
 from topomap.drawing.scenes import Scene
 from topomap.model import words
 from topomap.model.experience import parse, read
 from topomap.model.query import Query
-from topomap.page.page import FOLDER, Exploration
+from topomap.page.exploration import Exploration
 from topomap.page.replay import SHOWN, fate, replay
+from topomap.page.report import FOLDER
 from topomap.runtime.watch import Watch
 from topomap.search.traversal import breadth_first, root
 from topomap.worlds.environment import grid
@@ -358,7 +359,7 @@ def test_drawings_are_of_the_maps(name):
                 if gateway in world.links:
                     assert line[-1] == drawn.places[world.links[gateway][0]]
                 else:
-                    assert math.dist(line[0], line[-1]) < 1.1 * svg.STUB
+                    assert math.dist(line[0], line[-1]) < 1.1 * shapes.STUB
             for place, star in world.stars.items():
                 order = clockwise(drawn, world, place)
                 start = order.index(min(star))
@@ -370,7 +371,7 @@ def test_pictures_tell_the_gateways():
     seen = read(ROOT / GRID)
     at = min(answers(("closed", "boundary", "minimal", "planar"), seen.facts()))
     scene = Scene(seen.map_of(at), at, "")
-    drawn = svg.drawing(scene.world, None)
+    drawn = shapes.drawing(scene.world, None)
     text = svg.body(scene, drawn, False)
     number = r"-?[\d.]+"
     (ticks,), (dots,) = (
@@ -383,7 +384,7 @@ def test_pictures_tell_the_gateways():
     assert len(zeros) == sum(0 in star for star in scene.world.stars.values())
     for place, star in scene.world.stars.items():
         x, y = drawn.places[place]
-        own = [p for p in points if abs(math.dist(p[:2], (x, y)) - svg.RADIUS) < 0.2]
+        own = [p for p in points if abs(math.dist(p[:2], (x, y)) - shapes.RADIUS) < 0.2]
         turns = [math.atan2(v - b, u - a) for a, b, u, v in own]
         around = [(turn - turns[0]) % (2 * math.pi) for turn in turns]
         assert len(own) == len(star)
@@ -396,7 +397,7 @@ def test_pictures_tell_the_gateways():
     _, top, _, high = drawn.frame
     lowest = max(y for _, y in drawn.places.values())
     (y,) = [y for n, (_, _, (_, y)) in enumerate(drawn.faces) if not drawn.faces[n][1]]
-    assert lowest + svg.RADIUS < y < top + high
+    assert lowest + shapes.RADIUS < y < top + high
     for _, outline, point in drawn.faces:
         around = [Outline(line).contains_point(point) for _, line, _ in drawn.faces if line]
         assert sum(around) == bool(outline)
@@ -410,16 +411,16 @@ def test_pictures_tell_the_gateways():
     glyph = re.findall(f"({number}) ({number})", svg.agent(drawn, at[-1]))
     x, y = (sum(map(float, ends)) / 3 for ends in zip(*glyph, strict=True))
     (a, b), (u, v) = drawn.lines[at[-1]]
-    assert svg.RADIUS < math.dist((x, y), (a, b)) < 2.5 * svg.RADIUS
+    assert shapes.RADIUS < math.dist((x, y), (a, b)) < 2.5 * shapes.RADIUS
     assert abs(math.atan2(y - b, x - a) - math.atan2(v - b, u - a)) < 0.1
 
 
 def test_the_agent_is_seen_where_a_line_begins_twice():
     """Coordinates are whole numbers: the first points of a line may be one."""
-    drawn = svg.Drawing({0: (0, 0)}, {(0, 0): [(0, 0), (0, 0), (60, 0)]}, [], (0, 0, 1, 1))
+    drawn = shapes.Drawing({0: (0, 0)}, {(0, 0): [(0, 0), (0, 0), (60, 0)]}, [], (0, 0, 1, 1))
     glyph = re.findall(r"(-?\d+) (-?\d+)", svg.agent(drawn, (0, 0)))
     assert len(set(glyph)) == 3
-    assert all(int(x) > svg.RADIUS for x, _ in glyph)
+    assert all(int(x) > shapes.RADIUS for x, _ in glyph)
 
 
 def test_agreement_of_maps():

@@ -576,7 +576,7 @@ def test_a_map_of_clingo_is_the_only_one_given_if_clingo_gave_all(tmp_path, argu
 
 def first(file):
     """The first map of a file, as it is shown."""
-    found, fault = scenes.read(str(ROOT / GRID), Query(), Watch(), str(file))
+    found, fault = scenes.scenes_of(str(ROOT / GRID), Query(), Watch(), str(file))
     assert fault is None
     return found[0]
 

@@ -15,7 +15,7 @@ from conftest import ENCODINGS, PARTS, Truth
 from topomap.documents.check import STEP_RULES, by_definition, by_rules
 from topomap.model.experience import MARKER, Experience, explore
 from topomap.model.topology import TopologicalMap
-from topomap.questions.explore import Standing
+from topomap.questions.standings import Standing
 from topomap.solver.solving import FORMS
 from topomap.worlds.environment import EAST, WEST, grid, world
 from topomap.worlds.route import snake

@@ -5,7 +5,7 @@ from dataclasses import replace
 from itertools import combinations, product
 
 from conftest import Truth
-from topomap.questions.explore import Standing
+from topomap.questions.standings import Standing
 
 from oracles.worlds import random_experience, random_world
 

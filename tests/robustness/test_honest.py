@@ -11,7 +11,6 @@ import re
 
 import pytest
 from conftest import ROOT
-from topomap import commands
 from topomap.documents.maps import KINDS, document
 from topomap.drawing import scenes
 from topomap.model.experience import read
@@ -214,7 +213,7 @@ def cut_short(monkeypatch, *found):
         yield from found
         raise Stopped("timeout")
 
-    monkeypatch.setattr(commands, "_found", answers)
+    monkeypatch.setattr("topomap.api.solve.every", answers)
 
 
 def test_maps_that_are_not_proved_to_be_best_are_of_no_better_kind(inside, monkeypatch, tmp_path):
@@ -331,7 +330,7 @@ def test_ask_leaves_open_what_the_closed_maps_do_not_settle():
     from topomap.questions import ask, statements
 
     experience = read(ROOT / "instances/manhattan-tour20.lp")
-    answers = ask.Answers([statements.parse("planar", experience, "ask")])
+    answers = ask.Inquiry([statements.parse("planar", experience, "ask")])
     settle = answers._settle
 
     def closed_only(experience, query, kind, watch):

@@ -43,7 +43,7 @@ def svg(scene: Scene) -> str:
 
 
 def _write(scene: Scene, out: IO[bytes], form: str) -> None:
-    from topomap.drawing import draw
+    from topomap.drawing import sheet
 
     with _ALONE:
-        draw.save(draw.picture([scene]), out, form)
+        sheet.save(sheet.picture([scene]), out, form)

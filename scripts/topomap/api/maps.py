@@ -55,6 +55,11 @@ class Map:
         return self._corrected.map_of(self._found.at)
 
     @property
+    def found(self) -> Found:
+        """What was found, as the rest of the package has it."""
+        return self._found
+
+    @property
     def slots(self) -> int:
         """The number of directions at each place."""
         return self._seen.slots

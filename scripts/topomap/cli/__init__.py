@@ -11,10 +11,10 @@ from collections.abc import Sequence
 from functools import cache
 from typing import Any
 
-from topomap.runtime.version import VERSION
 from topomap.cli.arguments import STATUS, Parser
 from topomap.runtime.errors import InputError, say
 from topomap.runtime.status import BAD_INPUT, DONE, INTERRUPTED, PARTIAL
+from topomap.runtime.version import VERSION
 
 SUBCOMMANDS = (
     "generate",

@@ -1,9 +1,14 @@
 """The subcommand ``ask``."""
 
+import argparse
 from typing import Any
 
 from topomap.cli.arguments import add_encoding, add_optimal, add_query, command
+from topomap.cli.calls import parts_of
 from topomap.model.vocabulary import PARTS, VOCABULARY
+from topomap.runtime import formats
+from topomap.runtime.files import output
+from topomap.runtime.status import exit_status
 
 
 def add(group: Any) -> None:
@@ -24,3 +29,31 @@ def add(group: Any) -> None:
     add_optimal(made)
     add_query(made, PARTS)
     add_encoding(made)
+
+
+def run(args: argparse.Namespace) -> int:
+    """Settle statements."""
+    from topomap.api.ask import ask
+    from topomap.model.experience import read
+    from topomap.runtime.watch import heeding
+
+    experience = read(args.instance)
+    with output(args.output) as out:
+        with heeding(args.timeout) as watch:
+            answers = ask(
+                experience,
+                *args.statement,
+                optimal=args.optimal,
+                bound=args.bound,
+                horizon=args.horizon,
+                encoding=args.encoding,
+                watch=watch,
+                **parts_of(args),
+            )
+        if args.json:
+            out.write(
+                formats.line({"instance": args.instance, **answers.document()}, answers.fault)
+            )
+        else:
+            out.writelines(f"{line}\n" for line in answers.lines())
+    return exit_status(answers.fault, bool(answers.has_maps))

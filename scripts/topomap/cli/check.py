@@ -1,9 +1,15 @@
 """The subcommand ``check``."""
 
+import argparse
 from typing import Any
 
 from topomap.cli.arguments import add_query, command, number
+from topomap.cli.calls import parts_of
 from topomap.model.vocabulary import PROPERTIES
+from topomap.runtime import formats
+from topomap.runtime.errors import InputError
+from topomap.runtime.files import output
+from topomap.runtime.status import exit_status
 
 
 def add(group: Any) -> None:
@@ -35,3 +41,36 @@ def add(group: Any) -> None:
         help="a map may disbelieve K views (its key misread), and no more than it says itself",
     )
     add_query(made, PROPERTIES, horizon=False)
+
+
+def run(args: argparse.Namespace) -> int:
+    """Check maps that anyone made, by rules and by definition."""
+    from topomap.api.check import check
+    from topomap.documents import maps
+    from topomap.model.experience import read
+    from topomap.runtime.watch import heeding
+
+    documents = maps.read_maps(args.maps)
+    said = any(document.claims.get("noise") is not None for document in documents)
+    experience = read(args.instance, said or args.noise is not None)
+    documents = maps.of_instance(documents, args.instance)
+    if not documents:
+        raise InputError(f"{args.maps}: no maps of {args.instance} in it")
+    truth = maps.real_map(args.truth, experience, None) if args.truth else None
+    with output(args.output) as out:
+        with heeding(args.timeout) as watch:
+            judged = check(
+                experience,
+                documents,
+                bound=args.bound,
+                noise=args.noise,
+                truth=truth,
+                watch=watch,
+                **parts_of(args, PROPERTIES),
+            )
+        if args.json:
+            answer = {"instance": args.instance, **judged.document()}
+            out.write(formats.line(answer, judged.fault))
+        else:
+            out.writelines(f"{line}\n" for line in judged.lines())
+    return exit_status(judged.fault, not judged.unsound)

@@ -1,15 +1,15 @@
 """The subcommand ``count``."""
 
 import argparse
+from typing import Any
+
+from topomap.cli.arguments import add_crew, add_encoding, add_query, add_resume, command
 from topomap.cli.calls import crew_of, parts_of, run_of
+from topomap.model.vocabulary import OPTIMIZING, PARTS
 from topomap.runtime import formats
 from topomap.runtime.files import output
 from topomap.runtime.journal import Journal
 from topomap.runtime.status import exit_status
-from typing import Any
-
-from topomap.cli.arguments import add_crew, add_encoding, add_query, add_resume, command
-from topomap.model.vocabulary import OPTIMIZING, PARTS
 
 
 def add(group: Any) -> None:
@@ -33,7 +33,7 @@ def run(args: argparse.Namespace) -> int:
     """Count the search tree of an instance, by clingo."""
     from topomap.api.count import count
     from topomap.model.experience import read
-    from topomap.paper.statistics import figures_text
+    from topomap.paper import statistics
     from topomap.runtime.watch import heeding
 
     experience = read(args.instance)
@@ -56,6 +56,6 @@ def run(args: argparse.Namespace) -> int:
         if args.json:
             out.write(formats.line({"instance": args.instance, **counts}, counts.fault))
         else:
-            out.write(figures_text(counts, counts.fault))
+            out.write(statistics.text(counts, counts.fault))
         journal.complete = counts.complete
     return exit_status(counts.fault, bool(counts["final"]))

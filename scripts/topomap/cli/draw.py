@@ -1,8 +1,10 @@
 """The subcommand ``draw``."""
 
+import argparse
 from typing import Any
 
 from topomap.cli.arguments import add_scene, command
+from topomap.cli.scene import scene_of
 
 
 def add(group: Any) -> None:
@@ -20,3 +22,14 @@ def add(group: Any) -> None:
     made.add_argument(
         "-o", "--output", required=True, metavar="FILE", help="FILE.svg, FILE.png or FILE.pdf"
     )
+
+
+def run(args: argparse.Namespace) -> int:
+    """Draw a map into a file."""
+    from topomap.api.draw import form_of, save
+
+    form_of(args.output)
+    scene, status = scene_of(args)
+    if scene is not None:
+        save(scene, args.output)
+    return status

@@ -1,10 +1,20 @@
 """The subcommand ``explore``."""
 
-from typing import Any
+import argparse
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 from topomap.cli.arguments import add_query, command, number
+from topomap.cli.calls import parts_of
 from topomap.model.vocabulary import PRUNING
+from topomap.runtime import formats
+from topomap.runtime.errors import InputError, say
+from topomap.runtime.files import output
 from topomap.runtime.limits import LONGEST_WALK
+from topomap.runtime.status import exit_status
+
+if TYPE_CHECKING:
+    from topomap.model.experience import Experience
 
 
 def add(group: Any) -> None:
@@ -48,3 +58,53 @@ def add(group: Any) -> None:
         "--facts", action="store_true", help="print the maps as facts for encodings/explore.lp"
     )
     add_query(made, PRUNING)
+
+
+def run(args: argparse.Namespace) -> int:
+    """Say where to go next."""
+    from topomap.api.explore import OPTIMAL, candidates, explore
+    from topomap.model.experience import read
+    from topomap.runtime.watch import heeding
+
+    experience = read(args.instance)
+    if args.proof and args.output and Path(args.proof).resolve() == Path(args.output).resolve():
+        raise InputError(f"{args.proof}: it cannot be both --output and --proof")
+    if args.check:
+        return _check(args, experience)
+    with output(args.output) as out, heeding(args.timeout) as watch:
+        among = candidates(
+            experience,
+            args.among or OPTIMAL,
+            bound=args.bound,
+            horizon=args.horizon,
+            watch=watch,
+            **parts_of(args, PRUNING),
+        )
+        if args.facts and among.each:
+            out.write(among.facts(args.marker))
+            return exit_status(among.fault, True)
+        made = explore(experience, among, marker=args.marker, steps=args.steps, watch=watch)
+        if args.proof and among.each:
+            with output(args.proof) as file:
+                told = {"instance": args.instance, **made.proofs()}
+                file.write(formats.line(told, made.fault))
+        if not among.each:
+            say(f"{args.instance}: {among.lack()}")
+        if args.json:
+            out.write(formats.line({"instance": args.instance, **made.document()}, made.fault))
+        elif among.each:
+            out.writelines(f"{line}\n" for line in made.lines())
+    return exit_status(made.fault, made.kind not in ("bisimilar", "no map"))
+
+
+def _check(args: argparse.Namespace, experience: "Experience") -> int:
+    """Check what ``--proof`` wrote."""
+    from topomap.api.explore import check_proofs
+
+    checked = check_proofs(experience, args.check, horizon=args.horizon)
+    with output(args.output) as out:
+        if args.json:
+            out.write(formats.line({"instance": args.instance, **checked.document()}))
+        else:
+            out.writelines(f"{line}\n" for line in checked.lines())
+    return exit_status(None, not checked.wrong)

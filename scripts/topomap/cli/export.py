@@ -1,8 +1,10 @@
 """The subcommand ``export``."""
 
+import argparse
 from typing import Any
 
 from topomap.cli.arguments import add_scene, command
+from topomap.cli.scene import scene_of
 from topomap.runtime.limits import EXPORTS
 
 
@@ -20,3 +22,18 @@ def add(group: Any) -> None:
     add_scene(made)
     made.add_argument("--format", required=True, choices=EXPORTS)
     made.add_argument("-o", "--output", metavar="FILE", help="file to write (default: stdout)")
+
+
+def run(args: argparse.Namespace) -> int:
+    """Write a map for other tools."""
+    from topomap.drawing.ready import ready
+    from topomap.exchange.exports import FORMATS
+    from topomap.runtime.files import output
+
+    scene, status = scene_of(args)
+    if scene is None:
+        return status
+    ready()
+    with output(args.output) as file:
+        file.write(FORMATS[args.format](scene))
+    return status

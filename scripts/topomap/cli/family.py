@@ -4,14 +4,14 @@ import argparse
 import contextlib
 import shlex
 from pathlib import Path
+from typing import Any
+
+from topomap.cli.arguments import command
 from topomap.cli.generate import instance_of
 from topomap.runtime import formats
 from topomap.runtime.errors import InputError
 from topomap.runtime.files import output, text
 from topomap.runtime.status import DONE
-from typing import Any
-
-from topomap.cli.arguments import command
 
 
 def add(group: Any) -> None:

@@ -1,10 +1,19 @@
 """The subcommand ``follow``."""
 
-from typing import Any
+import argparse
+import time
+from typing import TYPE_CHECKING, Any
 
 from topomap.cli.arguments import command, number
 from topomap.model.vocabulary import PARTS
+from topomap.runtime import formats
+from topomap.runtime.errors import InputError, say
 from topomap.runtime.limits import MOST_COUNTED
+from topomap.runtime.status import DONE, INTERRUPT, NO, PARTIAL
+
+if TYPE_CHECKING:
+    from topomap.api.follow import Follower
+    from topomap.questions.lines import Log
 
 
 def add(group: Any) -> None:
@@ -59,3 +68,78 @@ what is certain: new(T), the place where the agent is after step T was not visit
     )
     add("--no-wait", dest="wait", action="store_false", help="end at the end of the file")
     add("--json", action="store_true", help="a line of JSON for each step")
+
+
+def run(args: argparse.Namespace) -> int:
+    """Follow an exploration, and tell after each step what is known."""
+    from topomap.api.follow import follow
+    from topomap.questions.lines import Log, arriving, decoded
+    from topomap.runtime.watch import Stopped, heeding
+
+    if args.log is not None and args.file != "-":
+        raise InputError("topomap follow: --log is for standard input; a FILE is its own log")
+    follower = follow(
+        planar=args.planar, bound=args.bound, marker=args.marker, count_limit=args.count_limit
+    )
+    log = Log(args.log) if args.log is not None else None
+    source = "standard input" if args.file == "-" else args.file
+    status = DONE
+    with heeding(quiet=True) as outer:
+        coming = arriving(args.file, args.wait, outer.tick)
+        try:
+            if log:
+                status = _replay(args, follower, log)
+            for line_number, line in enumerate(coming, 1):
+                begun = time.monotonic()
+                try:
+                    text = decoded(line, source, line_number)
+                    record = follower.record.with_line(text, source, line_number)
+                except InputError as error:
+                    if not args.keep_going:
+                        raise
+                    say(str(error))
+                    continue
+                if log and record != follower.record:
+                    log.add(text)
+                for _ in follower.take(record):
+                    status = _tell(args, follower, begun, status)
+                    begun = time.monotonic()
+                    outer.tick()
+        except Stopped:
+            raise KeyboardInterrupt from None
+    if (lack := follower.record.lack()) or not follower.record.steps:
+        raise InputError(f"{source}: {lack or 'no step in it'}")
+    return status
+
+
+def _replay(args: argparse.Namespace, follower: "Follower", log: "Log") -> int:
+    """Go to where a log ends, and say what is known there; the exit status by then."""
+    from topomap.questions.lines import decoded
+
+    record = follower.record
+    for line_number, line in log.lines():
+        record = record.with_line(decoded(line, log.path, line_number), log.path, line_number)
+    begun = time.monotonic()
+    for _ in follower.take(record):
+        pass
+    return _tell(args, follower, begun, DONE) if record.whole() else DONE
+
+
+def _tell(args: argparse.Namespace, follower: "Follower", begun: float, before: int) -> int:
+    """Print what is known now; the exit status, which was another one before. Once partial, it
+    stays so."""
+    from topomap.runtime.watch import Stopped, heeding
+
+    with heeding(args.timeout) as watch:
+        known = follower.status(watch)
+    if known.fault == INTERRUPT:
+        raise Stopped(INTERRUPT)
+    seconds = time.monotonic() - begun
+    if args.json:
+        answer = {**known.document(), "seconds": round(seconds, 4)}
+        print(formats.line(answer, known.fault), end="", flush=True)
+    else:
+        print("\n".join(known.lines(seconds)), flush=True)
+    if known.fault or before == PARTIAL:
+        return PARTIAL
+    return DONE if known.none_since is None else NO

@@ -3,16 +3,15 @@
 import argparse
 import contextlib
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
+
+from topomap.cli.arguments import Parser, add_environments, add_start, command, number
 from topomap.cli.calls import environment_of
 from topomap.runtime import formats
 from topomap.runtime.errors import InputError
 from topomap.runtime.files import output
-from topomap.runtime.status import DONE
-from typing import Any
-
-from topomap.cli.arguments import Parser, add_environments, add_start, command, number
 from topomap.runtime.limits import MOST_STEPS
+from topomap.runtime.status import DONE
 
 if TYPE_CHECKING:
     from topomap.worlds.instance import Instance

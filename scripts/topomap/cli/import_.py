@@ -1,8 +1,10 @@
 """The subcommand ``import``."""
 
+import argparse
 from typing import Any
 
 from topomap.cli.arguments import command
+from topomap.runtime.status import DONE
 
 
 def add(group: Any) -> None:
@@ -18,3 +20,14 @@ def add(group: Any) -> None:
     )
     made.add_argument("file", metavar="FILE.graphml|FILE.json")
     made.add_argument("-o", "--output", metavar="FILE", help="file to write (default: stdout)")
+
+
+def run(args: argparse.Namespace) -> int:
+    """Read a map that ``export`` wrote, and write it as ``solve --json`` does."""
+    from topomap.exchange.imports import import_map
+    from topomap.runtime.files import output
+
+    content = import_map(args.file)
+    with output(args.output) as file:
+        file.write(content)
+    return DONE

@@ -1,12 +1,12 @@
 """The subcommand ``path``."""
 
 import argparse
-from topomap.runtime import formats
-from topomap.runtime.folders import ENCODINGS, INSTANCES
-from topomap.runtime.status import DONE
 from typing import Any
 
 from topomap.cli.arguments import command
+from topomap.runtime import formats
+from topomap.runtime.folders import ENCODINGS, INSTANCES
+from topomap.runtime.status import DONE
 
 
 def add(group: Any) -> None:

@@ -1,7 +1,10 @@
 """The subcommand ``simulate``."""
 
 import argparse
-from typing import Any
+import contextlib
+import json
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any
 
 from topomap.cli.arguments import (
     Parser,
@@ -11,8 +14,18 @@ from topomap.cli.arguments import (
     command,
     number,
 )
+from topomap.cli.calls import environment_of, parts_of
 from topomap.model.vocabulary import PRUNING
+from topomap.runtime import formats
+from topomap.runtime.errors import InputError
+from topomap.runtime.files import output
 from topomap.runtime.limits import MOST_STEPS
+from topomap.runtime.status import exit_status
+
+if TYPE_CHECKING:
+    from topomap.api.simulate import Simulation
+    from topomap.runtime.watch import Watch
+    from topomap.worlds.environment import Environment
 
 
 def add(group: Any) -> None:
@@ -57,3 +70,100 @@ def add(group: Any) -> None:
     add("--timeout", type=number(float, 0.001), metavar="S", help="stop after S seconds")
     add("--json", action="store_true", help="write JSON")
     add("-o", "--output", metavar="FILE", help="file to write (default: stdout)")
+
+
+def run(args: argparse.Namespace) -> int:
+    """Let a robot explore, or one after the other."""
+    if args.kind == "list":
+        return _list(args)
+    from topomap.runtime.watch import heeding
+
+    environment = _environment(args)
+    with contextlib.ExitStack() as files:
+        out = files.enter_context(output(args.output))
+        instance = args.instance and files.enter_context(output(args.instance))
+        with heeding(args.timeout) as watch:
+            watch.title(environment.name)
+            made = _simulated(args, environment, watch)
+        if instance:
+            instance.write(f"% what a robot did and saw in {made.name}\n\n")
+            instance.write(made.experience.facts())
+        out.write(formats.line(made.json(), made.fault) if args.json else str(made))
+    return exit_status(made.fault, made.outcome.found)
+
+
+def _environment(args: argparse.Namespace) -> "Environment":
+    """The environment of a call. Raises InputError where it cannot be mapped."""
+    from topomap.questions.robot import start_of
+
+    environment = environment_of(args)
+    if args.signs:
+        environment = environment.signed(args.signs, args.seed or 0)
+    start_of(environment, args.start, args.facing)
+    return environment
+
+
+def _simulated(
+    args: argparse.Namespace, environment: "Environment", watch: "Watch"
+) -> "Simulation":
+    from topomap.api.simulate import simulate
+
+    return simulate(
+        environment,
+        start=args.start,
+        facing=args.facing,
+        steps=args.steps,
+        marker=args.marker,
+        bound=args.bound,
+        watch=watch,
+        **parts_of(args, PRUNING),
+    )
+
+
+def _list(args: argparse.Namespace) -> int:
+    """One robot for each line of a file, and what came of them in a table."""
+    from topomap.questions.robot import ENDED, ENDS, table
+    from topomap.runtime.watch import heeding
+
+    calls = list(_calls(args))
+    rows: list[dict[str, Any]] = []
+    fault = None
+    with output(args.output) as out:
+        with heeding(args.timeout) as watch:
+            for call, parsed, environment in calls:
+                watch.title(call)
+                made = _simulated(parsed, environment, watch)
+                if made.end not in ENDS:
+                    fault = made.end
+                    break
+                rows.append({**made.json(), "environment": call})
+        if any(row["end"] not in ENDED for row in rows):
+            fault = fault or "steps"
+        if args.json:
+            json.dump(formats.answer({"rows": rows}, fault), out, indent=1)
+            out.write("\n")
+        else:
+            out.write(table(rows))
+            if fault:
+                out.write(f"partial: {fault}; {len(rows)} of {len(calls)} lines\n")
+    return exit_status(fault, all(row["truth"] for row in rows))
+
+
+def _calls(args: argparse.Namespace) -> "Iterator[tuple[str, argparse.Namespace, Environment]]":
+    """The lines of the file, parsed, each with its environment. Raises InputError naming the line
+    that is no call, or of a world that cannot be mapped."""
+    from topomap.cli import parse
+    from topomap.worlds.family import expand
+
+    for line, call in expand(args.file):
+        try:
+            with contextlib.redirect_stdout(None):
+                parsed = parse(["simulate", *call])
+            if parsed.kind == "list" or parsed.output or parsed.instance or parsed.json:
+                raise InputError("list, -o, --instance and --json have no place in a list")
+            environment = _environment(parsed)
+        except SystemExit:
+            raise InputError(f"{args.file}:{line}: --help has no place in a list") from None
+        except InputError as error:
+            raise InputError(f"{args.file}:{line}: {error}") from None
+        yield " ".join(call), parsed, environment

@@ -2,14 +2,7 @@
 
 import argparse
 import json
-from typing import IO, TYPE_CHECKING
-from topomap.cli.calls import crew_of, parts_of, run_of
-from topomap.runtime import formats
-from topomap.runtime.errors import InputError, say
-from topomap.runtime.files import output
-from topomap.runtime.journal import Journal
-from topomap.runtime.status import INTERRUPT, exit_status
-from typing import Any
+from typing import IO, TYPE_CHECKING, Any
 
 from topomap.cli.arguments import (
     add_crew,
@@ -20,7 +13,13 @@ from topomap.cli.arguments import (
     command,
     number,
 )
+from topomap.cli.calls import crew_of, parts_of, run_of
 from topomap.model.vocabulary import PARTS
+from topomap.runtime import formats
+from topomap.runtime.errors import InputError, say
+from topomap.runtime.files import output
+from topomap.runtime.journal import Journal
+from topomap.runtime.status import INTERRUPT, exit_status
 
 if TYPE_CHECKING:
     from topomap.model.experience import Experience

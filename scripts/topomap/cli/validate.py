@@ -1,12 +1,12 @@
 """The subcommand ``validate``."""
 
 import argparse
-from topomap.runtime import formats
-from topomap.runtime.errors import printable
-from topomap.runtime.status import BAD_INPUT, DONE
 from typing import Any
 
 from topomap.cli.arguments import command
+from topomap.runtime import formats
+from topomap.runtime.errors import printable
+from topomap.runtime.status import BAD_INPUT, DONE
 
 
 def add(group: Any) -> None:

@@ -1,7 +1,7 @@
 """What is wrong with maps, by two checkers, and whether they are what is said of them."""
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass, field
 from typing import Any
 
 from topomap.documents.check import STEP_RULES, At, Grown, Violation, by_definition, by_rules
@@ -31,6 +31,55 @@ class Verdict:
     @property
     def sound(self) -> bool:
         return not self.violations and not self.faults
+
+
+@dataclass
+class Judged:
+    """The verdicts on ``count`` maps of an experience of ``steps`` steps, of which ``demands``
+    were asked; ``fault`` says why not all were judged, if so."""
+
+    count: int
+    steps: int
+    demands: list[str]
+    verdicts: list[Verdict] = field(default_factory=list)
+    fault: str | None = None
+
+    @property
+    def complete(self) -> bool:
+        """Whether all the maps were judged."""
+        return self.fault is None
+
+    @property
+    def unsound(self) -> list[Verdict]:
+        """The verdicts on the maps with which something is wrong."""
+        return [verdict for verdict in self.verdicts if not verdict.sound]
+
+    @property
+    def short(self) -> int:
+        """How many of the maps are of part of the steps."""
+        return sum(verdict.short for verdict in self.verdicts)
+
+    def document(self) -> dict[str, Any]:
+        """The same as JSON."""
+        return {
+            "demands": self.demands,
+            "unsound": [asdict(verdict) for verdict in self.unsound],
+            "checked": len(self.verdicts),
+            "short": self.short,
+            "count": self.count,
+        }
+
+    def lines(self) -> Iterator[str]:
+        """The same in lines to read."""
+        for verdict in self.unsound:
+            broken = [f"violation({rule},{step})" for rule, step in verdict.violations]
+            yield f"{verdict.where}: {'; '.join(broken + verdict.faults)}"
+        many = words.number(self.count, "map").replace(",", "")
+        line = f"{len(self.verdicts)} of {many} checked" if self.fault else many
+        line += f", {len(self.unsound) or 'none'}{' of these' * bool(self.fault)} unsound"
+        if self.short:
+            line += f"; {self.short} of part of the {self.steps} steps"
+        yield line + (f"; partial: {self.fault}" if self.fault else "")
 
 
 def verdicts(

@@ -45,7 +45,8 @@ class Agreement:
             where = "at a new place"
             if before:
                 turned = (slot - at[before[0]][1]) % self.slots
-                where = f"where it was after step{'s' * (len(before) > 1)} {words.listed(before)}"
+                steps = words.plural(len(before), "step")
+                where = f"where it was after {steps} {words.listed(before)}"
                 where += f", gateway {turned} from that of step {before[0]}"
             told[where].append(number)
         return [(where, words.listed(numbers)) for where, numbers in told.items()]

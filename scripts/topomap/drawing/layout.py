@@ -12,8 +12,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from topomap.drawing.bent import STEPS, STUB, Points, bent, cross, faces_of
+from topomap.drawing.bent import STEPS, bent
+from topomap.drawing.mesh import Points, cross, faces_of
 from topomap.drawing.planarize import lacking, planar_part, routed
+from topomap.drawing.springs import STUB
 from topomap.model.topology import Gateway, Place, TopologicalMap
 
 SHORTEST = 0.4  # link in a drawing by the compass

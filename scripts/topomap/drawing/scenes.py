@@ -13,7 +13,7 @@ from topomap.model.experience import MOST_SLOTS, Experience, parse
 from topomap.model.found import UNPROVED, Found
 from topomap.model.query import Query
 from topomap.model.topology import Gateway, TopologicalMap
-from topomap.model.words import markers, short
+from topomap.model.words import markers, plural, short
 from topomap.runtime import nx
 from topomap.runtime.errors import InputError, printable
 from topomap.runtime.files import text
@@ -56,12 +56,13 @@ class Scene:
         if self.whole and not self.kind:
             which += " given"
         genus = world.genus()
-        sizes = [
-            _number(len(world.stars), "place"),
-            _number(len(world.links) // 2, "link"),
-            _number(len(world.paths()), "path"),
-            "planar" if genus == 0 else f"genus {genus}",
-        ]
+        counts = {
+            "place": len(world.stars),
+            "link": len(world.links) // 2,
+            "path": len(world.paths()),
+        }
+        sizes = [f"{count} {plural(count, noun)}" for noun, count in counts.items()]
+        sizes.append("planar" if genus == 0 else f"genus {genus}")
         name = short(PurePath(printable(self.name)).stem, 100)
         kind = short(printable(self.kind), 60)
         title = self.caption or f"{f'{name}: ' * bool(name)}{which}{f', {kind}' * bool(kind)}"
@@ -80,11 +81,7 @@ class Scene:
         return found
 
 
-def _number(number: int, noun: str) -> str:
-    return f"{number} {noun}{'s' * (number != 1)}"
-
-
-def read(
+def scenes_of(
     path: str, query: Query, watch: Watch, given: str | None = None
 ) -> tuple[list[Scene], str | None]:
     """The maps of a file, and why they may not be all of them, if so.

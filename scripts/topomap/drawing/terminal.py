@@ -16,8 +16,8 @@ from string import ascii_letters
 
 import numpy as np
 
-from topomap.drawing.bent import Points
 from topomap.drawing.layout import Layout, layout, straight
+from topomap.drawing.mesh import Points
 from topomap.drawing.scenes import Scene
 from topomap.model.topology import Gateway, Place, gid, label
 from topomap.runtime.errors import printable

@@ -1,4 +1,5 @@
-"""Maps for other tools: GraphML and JSON (node-link), which can be read back, DOT and clingraph.
+"""Maps for other tools: GraphML and JSON (node-link), which ``imports`` reads back, DOT and
+clingraph.
 
 As a graph a map is a networkx MultiGraph: a node is a place, an edge a link. Lists are JSON
 texts in GraphML, which has none.
@@ -7,23 +8,19 @@ texts in GraphML, which has none.
 import json
 from collections.abc import Callable, Iterator
 from itertools import pairwise
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import clingo
 
-from topomap.documents import maps
-from topomap.documents.answers import map_json
-from topomap.drawing.scenes import Scene, of_document
+from topomap.drawing.scenes import Scene
 from topomap.model.found import steps_json
 from topomap.model.topology import Gateway, Place, gid
 from topomap.runtime import formats, nx
-from topomap.runtime.errors import InputError, printable
-from topomap.runtime.files import data
+from topomap.runtime.errors import printable
 from topomap.runtime.limits import EXPORTS
-from topomap.worlds.network import read_graphml
 
 if TYPE_CHECKING:
-    from topomap.drawing.bent import Points
+    from topomap.drawing.mesh import Points
 
 Node = tuple[Place | Gateway, dict[str, str]]
 Edge = tuple[Place | Gateway, Place | Gateway, dict[str, str]]
@@ -79,79 +76,6 @@ def graphml(scene: Scene) -> str:
 def node_link(scene: Scene) -> str:
     """The map as node-link JSON."""
     return json.dumps(formats.headed(nx.node_link_data(graph_of(scene), edges="edges"))) + "\n"
-
-
-def read(file: str) -> str:
-    """What ``solve --json`` writes of the map in a file of GraphML or node-link JSON. Raises
-    InputError, one line, if there is none that ``export`` writes."""
-    content = data(file)
-    if content.lstrip(b"\xef\xbb\xbf \t\r\n")[:1] == b"<":
-        graph = read_graphml(file, content, int)
-    else:
-        try:
-            told = json.loads(content)
-            formats.demand(file, told)
-            graph = nx.node_link_graph(told, edges="edges")
-        except (MemoryError, InputError):
-            raise
-        except Exception:  # networkx checks nothing
-            raise InputError(f"{file}: not a graph in JSON that networkx reads") from None
-    return _read(file, graph)
-
-
-def _read(file: str, graph: "nx.Graph[Any]") -> str:
-    given = graph.graph
-    if graph.is_directed() or not isinstance(given, dict) or not {"slots", "at"} <= set(given):
-        raise InputError(
-            f"{file}: not a map, as topomap export writes it: no slots, or no route at"
-        )
-    try:
-        for attributes in (given, *graph.nodes.values(), *graph.edges.values()):
-            for key in LISTS & set(attributes):
-                if isinstance(attributes[key], str):
-                    attributes[key] = json.loads(attributes[key])
-    except (ValueError, RecursionError):
-        raise InputError(f"{file}: {key} is not a list, as topomap export writes it") from None
-    kind = given.get("kind") if given.get("kind") in maps.KINDS else None
-    entry = {
-        "at": given["at"],
-        "places": [{**attributes, "place": place} for place, attributes in graph.nodes.items()],
-        "links": [attributes.get("ends") for attributes in graph.edges.values()],
-    }
-    claims = {
-        "instance": given.get("name"),
-        "slots": given["slots"],
-        "parts": [],
-        "bound": None,
-        "optimal": kind in maps.BEST,
-    }
-    (scene,) = of_document(maps.document(file, {**claims, "maps": [entry], "kind": kind}))
-    if not scene.at:
-        raise InputError(f"{file}: no route in it")
-    try:
-        same = _told(graph) == _told(graph_of(scene))
-    except RecursionError:
-        same = False
-    if not same:
-        raise InputError(f"{file}: gateways, landmarks, steps or genus do not fit the links and at")
-    claims["horizon"] = len(scene.at) - 1
-    # There may be more maps of that kind than this one.
-    made = {**claims, "maps": [map_json(scene.world, scene.at)], "kind": kind, "count": 1}
-    return formats.line(made, "a single map, imported")
-
-
-def _told(graph: "nx.Graph[Any]") -> str:
-    """What a graph says of a map, but for names: other tools may add what they like."""
-    whole = [graph.graph.get(key) for key in ("slots", "genus", "at")]
-    places = [
-        [place, *(attributes.get(key) for key in ("gateways", "landmarks"))]
-        for place, attributes in graph.nodes.items()
-    ]
-    links = [
-        [sorted([a, b], key=str), *(attributes.get(key) for key in ("ends", "steps", "back"))]
-        for a, b, attributes in graph.edges(data=True)
-    ]
-    return json.dumps([whole, places, sorted(links, key=str)])
 
 
 def _drawing(scene: Scene) -> tuple[list[Node], list[Edge]]:

@@ -11,9 +11,8 @@ from typing import Any
 
 from topomap.model import words
 from topomap.model.experience import Experience, Facts, Fault
-from topomap.runtime import files, formats
-from topomap.runtime.errors import InputError, printable
-from topomap.runtime.status import BAD_INPUT, DONE
+from topomap.runtime import files
+from topomap.runtime.errors import InputError
 
 MOST = 1000  # faults of a file that are told
 # So many turns back, each where there were other gateways, are strange, if there are no others:

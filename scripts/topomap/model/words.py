@@ -24,9 +24,14 @@ RULES = {
 }
 
 
+def plural(count: int, noun: str, nouns: str | None = None) -> str:
+    """The noun for so many."""
+    return noun if count == 1 else nouns or f"{noun}s"
+
+
 def number(count: int, noun: str, nouns: str | None = None) -> str:
     """So many of them."""
-    return f"{count:,} {noun if count == 1 else nouns or noun + 's'}"
+    return f"{count:,} {plural(count, noun, nouns)}"
 
 
 def direction(slot: int, slots: int) -> str:

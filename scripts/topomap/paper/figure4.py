@@ -9,7 +9,7 @@ from typing import Any
 
 from topomap.model.experience import read
 from topomap.model.query import Query
-from topomap.paper.statistics import KEYS, tree
+from topomap.paper.statistics import KEYS, WORDS, tree
 from topomap.runtime.folders import INSTANCES
 from topomap.runtime.journal import Journal
 from topomap.runtime.watch import Watch
@@ -17,15 +17,6 @@ from topomap.runtime.watch import Watch
 COLUMNS: list[dict[str, Any]] = json.loads(
     Path(__file__).with_name("figure4.json").read_text(encoding="utf-8")
 )["columns"]
-WORDS = {
-    "nodes": "Search-tree nodes built",
-    "maps_built": "Maps built",
-    "final": "Final maps (all)",
-    "closed": "Final maps (closed: no path untravelled)",
-    "closed_text": "  (closed: no gateway pending)",
-    "optimal": "Optimal final maps",
-    "perpendicular": "Closed and perpendicular maps",
-}
 
 
 def row(column: dict[str, Any], watch: Watch) -> dict[str, Any]:

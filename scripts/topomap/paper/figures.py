@@ -13,8 +13,8 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Circle, Polygon
 from matplotlib.ticker import MaxNLocator, NullFormatter
 
-from topomap.drawing import draw, scenes
-from topomap.drawing.bent import Points
+from topomap.drawing import panel, scenes, sheet
+from topomap.drawing.mesh import Points
 from topomap.drawing.scenes import Scene
 from topomap.model.experience import Experience, read
 from topomap.model.query import Query
@@ -86,7 +86,7 @@ def first(watch: Watch) -> Figure:
         *(f"consistent; {len(scene.world.pending())} gateways pending" for scene in others[:2]),
         "the only closed map: the real one",
     ]
-    figure = draw.picture(
+    figure = sheet.picture(
         [
             titled(scene, f"({letter}) {caption}")
             for letter, scene, caption in zip("abc", [*others[:2], real], captions, strict=True)
@@ -99,11 +99,11 @@ def first(watch: Watch) -> Figure:
     for axes, box in zip(figure.axes, boxes, strict=True):
         left = (box.x0 * wide + more) / (wide + more)
         axes.set_position((left, box.y0, box.width * wide / (wide + more), box.height))
-    with mpl.rc_context(draw.STYLE):
+    with mpl.rc_context(sheet.STYLE):
         log = figure.add_axes((0, boxes[0].y0, more / (wide + more), boxes[0].height))
         _log(log, made.experience)
         title = f"what was seen: {len(found)} maps explain it\narrows: where the agent turns"
-        log.set_title(title, fontsize=draw.TITLE, color=draw.INK, pad=5)
+        log.set_title(title, fontsize=panel.TITLE, color=panel.INK, pad=5)
     return figure
 
 
@@ -118,7 +118,7 @@ def _log(axes: Any, experience: Experience) -> None:
         _star(axes, centre, 0.36, experience.slots, view, turn, begins=step == 0)
         text = f"step {step}" if step else "start"
         x, y = centre
-        axes.text(x, y - 0.55, text, fontsize=6, color=draw.STEP, ha="center")
+        axes.text(x, y - 0.55, text, fontsize=6, color=panel.STEP, ha="center")
     axes.set_xlim(-0.5 * wide, (columns - 0.5) * wide)
     axes.set_ylim(-(rows - 1) * high - 0.6, 0.6)
     axes.set_aspect("equal")
@@ -142,18 +142,18 @@ def _star(
     outs = [np.array([np.cos(angle), np.sin(angle)]).round(6) for angle in angles]
     for slot in sorted(view):
         line = np.array([centre, centre + length * outs[slot]])
-        axes.plot(*line.T, color=draw.LINK, lw=2, solid_capstyle="butt", zorder=1)
+        axes.plot(*line.T, color=panel.LINK, lw=2, solid_capstyle="butt", zorder=1)
     if turn is not None:
         line = np.array([centre + 0.5 * length * outs[turn], centre + 1.6 * length * outs[turn]])
         _arrow(axes, line, BLUE)
     size = 0.35 * length
-    style = {"fc": "white", "ec": draw.INK, "lw": 1.2, "zorder": 4}
+    style = {"fc": "white", "ec": panel.INK, "lw": 1.2, "zorder": 4}
     axes.add_patch(Circle(tuple(centre), size, **style))
     ahead = outs[0] if begins else -outs[0]
     side = np.array([-ahead[1], ahead[0]])
     foot = centre + 0.75 * length * outs[0] - 0.2 * length * ahead
     points = [foot + 0.5 * length * ahead, foot + 0.25 * length * side, foot - 0.25 * length * side]
-    axes.add_patch(Polygon(points, fc=draw.AGENT, ec="white", lw=0.6, zorder=7))
+    axes.add_patch(Polygon(points, fc=panel.AGENT, ec="white", lw=0.6, zorder=7))
     return outs
 
 
@@ -168,7 +168,7 @@ def place() -> Figure:
             "view(1,0). view(1,2). view(1,3).  turn(2,3).",
         ),
     ]
-    with mpl.rc_context(draw.STYLE):
+    with mpl.rc_context(sheet.STYLE):
         figure = _figure(5.6, 2.6)
         for number, (title, view, turn, facts) in enumerate(panels):
             axes = figure.add_axes((number / 2, 0, 0.5, 1))
@@ -180,9 +180,9 @@ def place() -> Figure:
                 far = 1.0 if slot == turn else 0.66
                 x, y = far * out
                 style: Any = {"fontsize": 10, "ha": "center", "va": "center"}
-                axes.text(x, y, str(slot), color=draw.INK, **style)
-            axes.text(0, 1.25, title, fontsize=8, color=draw.INK, ha="center")
-            axes.text(0, -1.1, facts, fontsize=7, color=draw.STEP, ha="center")
+                axes.text(x, y, str(slot), color=panel.INK, **style)
+            axes.text(0, 1.25, title, fontsize=8, color=panel.INK, ha="center")
+            axes.text(0, -1.1, facts, fontsize=7, color=panel.STEP, ha="center")
             axes.set_xlim(-1.4, 1.4)
             axes.set_ylim(-1.2, 1.4)
             axes.set_aspect("equal")
@@ -195,7 +195,7 @@ def figure1(experience: Experience, watch: Watch) -> Figure:
     made = instance(grid(3, 3), "snake")
     real = Scene(experience.map_of(made.truth), (), "")
     planar, other = sorted(best(experience, watch), key=lambda scene: scene.world.genus())
-    return draw.picture(
+    return sheet.picture(
         [
             titled(real, "(a) the environment"),
             titled(planar, "(b) an optimal map"),
@@ -209,10 +209,10 @@ def figure3(watch: Watch) -> Figure:
     made = instance(grid(2, 3), "snake")
     (found,) = maps(made.experience, watch, "planar", "closed", "perpendicular")
     scene = replace(found, at=())
-    with mpl.rc_context(draw.STYLE):
+    with mpl.rc_context(sheet.STYLE):
         figure = _figure(6.4, 2.6)
         left, right = figure.subplots(1, 2)
-        laid = draw.draw(
+        laid = panel.draw(
             left, titled(scene, "(a) e2 = rev(e1), e3 = pred(e2) = next(e1)"), False, False
         )
         walk = next(face for face in laid.faces if len(face) > 3)
@@ -231,14 +231,14 @@ def figure3(watch: Watch) -> Figure:
             style = {"fontsize": 7, "ha": "center", "va": "center", "rotation": turn}
             left.text(x, y, text, color=colour, **style)
         walks = f"(b) the walks round its {len(laid.faces)} faces"
-        laid = draw.draw(right, titled(scene, walks), False, False)
+        laid = panel.draw(right, titled(scene, walks), False, False)
         low = np.min(list(laid.places.values()), axis=0)
         for number, face in enumerate(laid.faces):
             colour = WALKS[number % len(WALKS)]
             for gateway in face:
                 _arrow(right, _beside(laid.lines[gateway], 0.12), colour)
             is_outer = number == laid.outer
-            x, y = low - [0, 0.28] if is_outer else draw.inside(laid.outline(face))
+            x, y = low - [0, 0.28] if is_outer else panel.inside(laid.outline(face))
             name = f"{number + 1}{' (outer)' * is_outer}"
             right.text(x, y, name, color=colour, fontsize=9, ha="center", va="center")
         figure.subplots_adjust(0.01, 0.02, 0.99, 0.84, 0.05)
@@ -250,7 +250,7 @@ def _beside(line: Points, aside: float) -> Points:
     a, b = line[0], line[-1]
     ahead = (b - a) / np.linalg.norm(b - a)
     right = aside * np.array([ahead[1], -ahead[0]])
-    short = 1.3 * draw.RADIUS * ahead
+    short = 1.3 * panel.RADIUS * ahead
     return np.array([a + short + right, b - short + right])
 
 
@@ -262,7 +262,7 @@ def _arrow(axes: Any, line: Points, colour: str) -> None:
 def growth(watch: Watch) -> Figure:
     """Beside the paper's Figure 4: how the tree grows, step by step."""
     rows = [(column, figure4.row(column, watch)["per_step"]) for column in figure4.COLUMNS]
-    with mpl.rc_context(draw.STYLE):
+    with mpl.rc_context(sheet.STYLE):
         figure = _figure(9, 3.2)
         names = list(dict.fromkeys(column["environment"] for column, _ in rows))
         for name, axes in zip(names, figure.subplots(1, len(names)), strict=True):
@@ -298,7 +298,7 @@ def equation1(experience: Experience, watch: Watch) -> Figure:
             [(n.seen.predicted, n.seen.measured) for n in nodes],
         ),
     ]
-    with mpl.rc_context(draw.STYLE):
+    with mpl.rc_context(sheet.STYLE):
         figure = _figure(8, 4)
         for axes, (title, pairs) in zip(figure.subplots(1, 2), panels, strict=True):
             known = [(float(p), float(m)) for p, m in pairs if p is not None]
@@ -327,7 +327,7 @@ def figure5(experience: Experience, watch: Watch) -> Figure:
         return not scene.world.indistinguishable(scene.at[-1], real.world, real.at[-1])
 
     told, never = sorted(optimal, key=is_told, reverse=True)
-    return draw.picture(
+    return sheet.picture(
         [
             titled(real, "(a) the real map"),
             titled(others[0], f"(b) one of {len(others)} others, closed, perpendicular"),
@@ -354,7 +354,7 @@ def manhattan(tours: list[Experience], watch: Watch) -> Figure:
         which = f"one of {len(found)} best{' planar ones' * bool(parts)} so far"
         panels.append(titled(found[0], f"after {tour.steps} steps: {which}"))
         panels.append(titled(truth, f"after {tour.steps} steps: the truth"))
-    return draw.picture([*panels[:2], real, *panels[2:]], columns=3)
+    return sheet.picture([*panels[:2], real, *panels[2:]], columns=3)
 
 
 def _figure(width: float, height: float) -> Figure:

@@ -1,6 +1,6 @@
 """The figures of the search tree (the paper, Figure 4), by clingo and by search."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import asdict, dataclass, field, replace
 from functools import partial
 from itertools import islice
@@ -19,6 +19,15 @@ from topomap.solver.solving import count, demand_cover
 
 LARGE = 10_000  # a tree with a level of more hypotheses is counted cube by cube
 KEYS = ("nodes", "maps_built", "final", "closed", "closed_text", "optimal", "perpendicular")
+WORDS = {
+    "nodes": "Search-tree nodes built",
+    "maps_built": "Maps built",
+    "final": "Final maps (all)",
+    "closed": "Final maps (closed: no path untravelled)",
+    "closed_text": "  (closed: no gateway pending)",
+    "optimal": "Optimal final maps",
+    "perpendicular": "Closed and perpendicular maps",
+}
 FINAL = {
     "closed": ("travelled",),
     "closed_text": ("closed",),
@@ -163,6 +172,17 @@ class Tally:
             self.optimal = number + (self.optimal if cost == self.cost else 0)
             self.cost = cost
 
+    def told(self, fault: str | None, order: str) -> dict[str, Any]:
+        """What is known of these figures if the search, in this order, was cut for that fault."""
+        figures = self.figures()
+        if fault and order == "breadth":  # in the midst of the last level with a node
+            whole = sum(map(bool, self.per_step)) - 1
+            return dict.fromkeys(KEYS) | {"per_step": self.per_step[: max(0, whole)]}
+        if fault:  # of no step all nodes are known; others may be better than the best so far
+            least = {key: figures[key] for key in (*KEYS, "per_step") if key != "optimal"}
+            return dict.fromkeys((*KEYS, "per_step")) | {"at_least": least}
+        return figures
+
     def figures(self) -> dict[str, Any]:
         """What ``tree`` gives."""
         counted = {key: getattr(self, key) for key in FINAL}
@@ -204,3 +224,18 @@ def _part(experience: Experience, query: Query, cube: Cube, watch: Watch | None)
     for _ in traversal.depth_first(node, watch):
         tally.add(node)
     return tally
+
+
+def text(figures: Mapping[str, Any], fault: str | None) -> str:
+    """The figures to read; of a search that was cut, ``at_least`` holds what the nodes met until
+    then come to."""
+    least = figures.get("at_least")
+    told, more = (least, "at least ") if least else (figures, "")
+    steps = " ".join(map(str, told["per_step"])) or "not counted"
+    lines = [f"hypotheses after each step: {more}{steps}"]
+    for key in KEYS:
+        known = "not counted" if told.get(key) is None else f"{more}{told[key]:,}"
+        lines.append(f"{WORDS[key]:<42}{known:>12}")
+    if fault:
+        lines.append(f"partial: {fault}")
+    return "\n".join(lines) + "\n"

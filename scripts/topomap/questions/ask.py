@@ -1,12 +1,11 @@
-"""``topomap ask``: whether a statement holds in all maps, in some or in none.
+"""Whether a statement holds in all maps, in some or in none.
 
 It holds in some map if there is an answer with it assumed, and in all if there is none with its
 negation assumed. So no maps are enumerated; and what a map shows of other statements is not
 asked again. Of the best maps, first what the best ones cost is found, and is then a bound.
 """
 
-import argparse
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
 from typing import Any
@@ -14,16 +13,11 @@ from typing import Any
 import clingo
 
 from topomap.documents.answers import map_json, map_line
-from topomap.model.experience import Experience, read
+from topomap.model.experience import Experience
 from topomap.model.found import Found
 from topomap.model.query import Query
-from topomap.model.vocabulary import PARTS
-from topomap.questions import statements
 from topomap.questions.statements import Statement
-from topomap.runtime import formats
-from topomap.runtime.files import output
-from topomap.runtime.limits import LARGEST
-from topomap.runtime.watch import Run, Watch
+from topomap.runtime.watch import Watch
 from topomap.solver.solving import Program, calls
 
 BUDGETS = ("1000", "30000", "umax")  # conflicts: what is hard to settle holds up nothing else
@@ -31,7 +25,7 @@ Literal = tuple[str, bool]  # a term of a statement, and whether it holds
 
 
 @dataclass
-class Answer:
+class Known:
     """What is known of a statement: a map in which it holds, one in which it does not, and
     whether it is proved that there is none."""
 
@@ -58,11 +52,11 @@ class Answer:
         return "not settled"
 
 
-class Answers:
+class Inquiry:
     """What is known of statements, and of which maps: ``some`` tells whether there are any."""
 
     def __init__(self, asked: Sequence[Statement]):
-        self.each = [Answer(statement) for statement in asked]
+        self.each = [Known(statement) for statement in asked]
         self.terms = dict.fromkeys(statement.term for statement in asked)
         self.some: bool | None = None
         self.kind: str | None = None
@@ -93,19 +87,62 @@ class Answers:
                 self.some, self.kind = False, kind
 
     def _see(self, found: Found, literals: set[Literal]) -> None:
-        for answer in self.each:
-            if (answer.statement.term, answer.statement.positive) in literals:
-                answer.witness = answer.witness or found
+        for known in self.each:
+            if (known.statement.term, known.statement.positive) in literals:
+                known.witness = known.witness or found
             else:
-                answer.counter = answer.counter or found
+                known.counter = known.counter or found
 
     def _rule_out(self, literal: Literal) -> None:
-        for answer in self.each:
-            if answer.statement.term == literal[0]:
-                if answer.statement.positive == literal[1]:
-                    answer.never = True
+        for known in self.each:
+            if known.statement.term == literal[0]:
+                if known.statement.positive == literal[1]:
+                    known.never = True
                 else:
-                    answer.always = True
+                    known.always = True
+
+    def lines(self, experience: Experience, fault: str | None) -> Iterator[str]:
+        """What is known, to read; ``fault`` says why not all is settled."""
+        if self.some is False:
+            yield "no map is consistent with it"
+            return
+        for known in self.each:
+            yield f"{known.statement.text}: {known.words()}"
+            for does, found in ("it holds", known.witness), ("it does not", known.counter):
+                if found:
+                    yield f"  a map in which {does}: {map_line(experience, found)}"
+        if self.some:
+            cost = f", cost {' '.join(map(str, self.cost))}" if self.cost else ""
+            yield f"of the {self.kind} maps{cost}"
+        if fault:
+            yield f"partial: {fault}"
+
+    def document(self, experience: Experience, query: Query, optimal: bool) -> dict[str, Any]:
+        """What is known, as JSON; whole maps as ``solve`` writes them."""
+
+        def whole(found: Found | None) -> Any:
+            return found and map_json(experience.map_of(found.at), found.at)
+
+        return {
+            "slots": experience.slots,
+            "parts": sorted(query.parts),
+            "bound": query.places,
+            "horizon": query.horizon,
+            "optimal": optimal,
+            "kind": self.kind,
+            "cost": self.cost if self.some else None,
+            "has_maps": self.some,
+            "statements": [
+                {
+                    "statement": known.statement.text,
+                    "holds": known.holds,
+                    "note": known.statement.note,
+                    "witness": whole(known.witness),
+                    "counter": whole(known.counter),
+                }
+                for known in (self.each if self.some is not False else ())
+            ],
+        }
 
 
 def _work(
@@ -151,76 +188,3 @@ def _work(
                 going = put(((), (), [literal]))
             elif result.unknown:
                 left.append(literal)
-
-
-def ask(args: argparse.Namespace) -> int:
-    """Settle statements, and write what was found."""
-    experience = read(args.instance).cut(LARGEST if args.horizon is None else args.horizon)
-    asked = [statements.parse(text, experience, args.command) for text in args.statement]
-    parts = frozenset(part for part in PARTS if getattr(args, part))
-    query = Query(parts, args.bound, args.horizon, args.encoding)
-    answers = Answers(asked)
-    with output(args.output) as out:
-        with Run(args.timeout) as run:
-            answers.settle(experience, query, args.optimal, run.watch)
-        if args.json:
-            out.write(_json(args, experience, query, answers, run.fault))
-        else:
-            out.writelines(f"{line}\n" for line in _lines(experience, answers, run.fault))
-    return run.status(bool(answers.some))
-
-
-def _lines(experience: Experience, answers: Answers, fault: str | None) -> list[str]:
-    """The answers to read."""
-    if answers.some is False:
-        return ["no map is consistent with it"]
-    lines = []
-    for answer in answers.each:
-        lines.append(f"{answer.statement.text}: {answer.words()}")
-        for does, found in ("it holds", answer.witness), ("it does not", answer.counter):
-            if found:
-                lines.append(f"  a map in which {does}: {map_line(experience, found)}")
-    if answers.some:
-        cost = f", cost {' '.join(map(str, answers.cost))}" if answers.cost else ""
-        lines.append(f"of the {answers.kind} maps{cost}")
-    if fault:
-        lines.append(f"partial: {fault}")
-    return lines
-
-
-def _json(
-    args: argparse.Namespace,
-    experience: Experience,
-    query: Query,
-    answers: Answers,
-    fault: str | None,
-) -> str:
-    """The answers as JSON, whole maps as ``solve`` writes them."""
-
-    def whole(found: Found | None) -> Any:
-        return found and map_json(experience.map_of(found.at), found.at)
-
-    return formats.line(
-        {
-            "instance": args.instance,
-            "slots": experience.slots,
-            "parts": sorted(query.parts),
-            "bound": query.places,
-            "horizon": query.horizon,
-            "optimal": args.optimal,
-            "kind": answers.kind,
-            "cost": answers.cost if answers.some else None,
-            "has_maps": answers.some,
-            "statements": [
-                {
-                    "statement": answer.statement.text,
-                    "holds": answer.holds,
-                    "note": answer.statement.note,
-                    "witness": whole(answer.witness),
-                    "counter": whole(answer.counter),
-                }
-                for answer in (answers.each if answers.some is not False else ())
-            ],
-        },
-        fault,
-    )

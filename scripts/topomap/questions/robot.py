@@ -15,18 +15,27 @@ from topomap.model.experience import Experience
 from topomap.model.experience import explore as experienced
 from topomap.model.found import Found
 from topomap.model.query import Query
-from topomap.model.topology import Gateway, Place, TopologicalMap
+from topomap.model.topology import Gateway, Place, TopologicalMap, label
+from topomap.model.words import number
 from topomap.questions import explore
-from topomap.questions.explore import Prediction
+from topomap.questions.standings import Prediction, predict, standing
 from topomap.runtime import nx
 from topomap.runtime.errors import InputError
 from topomap.runtime.watch import Attempt, Watch
 from topomap.solver import solving
 from topomap.worlds import route
+from topomap.worlds.environment import Environment
 
 MOST_MAPS = 100  # best maps of which a walk is planned, while none is closed
 WALKS = 101  # random walks, of which the median is told
 ENDED = ("settled", "bisimilar", "no map")  # the ways to end that are no limit
+ENDS = {
+    "settled": "one closed map is optimal",
+    "bisimilar": "no walk can tell the optimal maps apart",
+    "no map": "no map is left that has what was asked for",
+    "steps": "as many steps as it may walk; partial: steps",
+}
+HEAD = "environment", "places", "ways", "signs", "steps", "tour", "random", "maps", "truth"
 PATIENCE = 1000  # times as many steps as there are ways, after which a random walk is given up
 
 
@@ -39,7 +48,8 @@ class Outcome:
     among them, and its map the whole world; None where that is open: the robot could go no
     further, or there may be more best maps than were kept. ``tour`` is the length of a tour over
     every way, by one who knows the map; ``random`` the median number of steps in which random
-    walks take every way (None: most do not within PATIENCE steps a way).
+    walks take every way (None: most do not within PATIENCE steps a way). ``whole`` tells whether
+    the best maps are all that there are.
     """
 
     world: TopologicalMap
@@ -50,10 +60,21 @@ class Outcome:
     truth: bool | None
     tour: int
     random: int | None
+    whole: bool
 
     @property
     def steps(self) -> int:
         return self.experience.steps
+
+    @property
+    def fault(self) -> str | None:
+        """Why the robot did not come to an end, if so."""
+        return None if self.end in ENDED else self.end
+
+    @property
+    def found(self) -> bool:
+        """Whether it came to one closed map, which is the truth."""
+        return self.end == "settled" and bool(self.truth)
 
     def json(self) -> dict[str, Any]:
         """What is told of it."""
@@ -68,6 +89,79 @@ class Outcome:
             "tour": self.tour,
             "random": self.random,
         }
+
+    def text(self, name: str) -> str:
+        """The same in words, in lines; ``name`` is the environment's."""
+        world = self.world
+        ways = len(world.links) // 2
+        lines = [
+            f"{name}: {number(len(world.stars), 'place')}, {number(ways, 'way')}, "
+            f"{number(len(world.landmarks), 'sign')}",
+            f"{number(self.steps, 'step')} walked: " + self._end(),
+        ]
+        if not world.boundaries_consistent():
+            lines.append("the truth has inconsistent boundaries, and so is never optimal")
+        so_far = " so far" * bool(self.fault)
+        if self.maps and self.truth is None:
+            many = number(len(self.maps), "best map")
+            or_more = " or more" * (len(self.maps) == MOST_MAPS)
+            lines.append(f"{many}{or_more}{so_far}; what the truth is, is open")
+        elif len(self.maps) == 1:
+            lines.append(f"the best map{so_far} is {'' if self.truth else 'not '}the truth")
+        elif self.maps:
+            is_there = "" if self.truth else "not "
+            lines.append(f"{len(self.maps)} best maps{so_far}, the truth is {is_there}among them")
+        tour = number(self.tour, "step")
+        lines.append(f"a tour over every way, by one who knows the map: {tour}")
+        walked = "not within reach" if self.random is None else number(self.random, "step")
+        lines.append(f"a random walk over every way (median): {walked}")
+        return "".join(line + "\n" for line in lines)
+
+    def _end(self) -> str:
+        """How it ended, in words."""
+        if self.end == "bisimilar" and len(self.maps) == MOST_MAPS:
+            return f"no walk can tell {MOST_MAPS} of the optimal maps apart"
+        return ENDS.get(self.end, f"partial: {self.end}")
+
+
+def table(rows: Sequence[dict[str, Any]]) -> str:
+    """What came of several robots, a line each; then of how many the truth."""
+    lines: list[tuple[str, ...]] = [HEAD]
+    for row in rows:
+        maps = row["best_maps"]
+        truth = {True: "yes", False: "no", None: "open"}[row["truth"]]
+        truth = f"one of {maps}" if row["truth"] and maps > 1 else truth
+        cells = {**row, "maps": maps, "truth": truth, "random": row["random"] or "-"}
+        lines.append(tuple(str(cells[key]) for key in HEAD))
+    widths = [max(map(len, column)) for column in zip(*lines, strict=True)]
+    text = "".join(
+        line[0].ljust(widths[0])
+        + "".join(f"  {cell:>{width}}" for cell, width in zip(line[1:], widths[1:], strict=True))
+        + "\n"
+        for line in lines
+    )
+    settled = [row for row in rows if row["end"] == "settled"]
+    true = sum(bool(row["truth"]) for row in settled)
+    return (
+        text + f"{number(len(settled), 'robot')} of {len(rows)} with one closed map, {true} true\n"
+    )
+
+
+def start_of(
+    environment: Environment, place: str | None = None, facing: int | None = None
+) -> tuple[TopologicalMap, Gateway]:
+    """What can be walked to in an environment from a place (the smallest, unless told), and the
+    gateway there where the robot stands first (the smallest, too). Raises InputError where it
+    cannot be mapped."""
+    stars = environment.map.stars
+    start = environment.place(place) if place is not None else min(stars)
+    slot = min(stars[start]) if facing is None else facing
+    if slot not in stars[start]:
+        raise InputError(f"{environment.name}: place {label(start)} has no gateway {slot}")
+    try:
+        return reached(environment.map, start), (start, slot)
+    except InputError as error:
+        raise InputError(f"{environment.name}: {error}") from None
 
 
 def reached(world: TopologicalMap, start: Place) -> TopologicalMap:
@@ -162,7 +256,7 @@ def simulate(
     walked = random_walk(world, start[0])
     whole = end in ENDED and len(maps) < MOST_MAPS
     truth = robot.mapped(maps) or (False if whole else None)
-    return Outcome(world, start, robot.experience(), tuple(maps), end, truth, tour, walked)
+    return Outcome(world, start, robot.experience(), tuple(maps), end, truth, tour, walked, whole)
 
 
 def _go_on(robot: Robot, maps: Sequence[Found], watch: Watch, most: int, marker: bool) -> str:
@@ -175,7 +269,7 @@ def _go_on(robot: Robot, maps: Sequence[Found], watch: Watch, most: int, marker:
     if len(robot.route) == most:
         return "steps"
     experience = robot.experience()
-    standings = [explore.standing(experience, one.at) for one in maps]
+    standings = [standing(experience, one.at) for one in maps]
     carried = marker and not robot.drops
     slots = robot.world.slots
     plan = explore.plan(slots, standings, watch, proofs=False)
@@ -185,15 +279,15 @@ def _go_on(robot: Robot, maps: Sequence[Found], watch: Watch, most: int, marker:
         return plan.kind
     if not plan.turns:
         return "a walk was not found" if plan.fault in explore.LIMITS else str(plan.fault)
-    walks = [explore.predict(one, plan.turns, plan.drop) for one in standings]
-    for number, turn in enumerate(plan.turns):
+    walks = [predict(one, plan.turns, plan.drop) for one in standings]
+    for nth, turn in enumerate(plan.turns):
         if len(robot.route) == most or turn not in robot.world.view(robot.dstate):
             break  # (in the second case another map is true, and is told from these)
-        if number == plan.drop:
+        if nth == plan.drop:
             robot.drops.append(len(robot.route))
         robot.step(turn)
         seen = robot.sight()
-        if any(number >= len(walk) or walk[number] != seen for walk in walks):
+        if any(nth >= len(walk) or walk[nth] != seen for walk in walks):
             break
     return ""
 

@@ -9,8 +9,8 @@ from errno import ENAMETOOLONG
 from pathlib import Path
 from typing import Any, BinaryIO
 
-from topomap.runtime.version import VERSION
 from topomap.runtime.errors import InputError, of_file, say
+from topomap.runtime.version import VERSION
 
 HEAD = b'{"topomap": '
 DONE = b"done"

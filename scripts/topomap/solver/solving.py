@@ -20,7 +20,6 @@ from typing import Any, ClassVar, TypeVar
 
 import clingo
 
-from topomap.runtime.version import VERSION
 from topomap.model.experience import Experience, Misread
 from topomap.model.found import Cube, Found
 from topomap.model.query import Query
@@ -28,6 +27,7 @@ from topomap.model.vocabulary import PRUNING
 from topomap.runtime.errors import InputError
 from topomap.runtime.folders import ENCODINGS
 from topomap.runtime.status import INTERRUPT
+from topomap.runtime.version import VERSION
 from topomap.runtime.watch import MEMORY, Stopped, Watch
 from topomap.solver import phases
 

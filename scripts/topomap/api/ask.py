@@ -1,0 +1,149 @@
+"""Whether statements hold in all maps, in some, or in none."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any, Unpack, overload
+
+from topomap.api.maps import Map
+from topomap.api.parts import Parts, query_of
+from topomap.model.experience import Experience
+from topomap.model.found import Found
+from topomap.model.query import Query
+from topomap.model.vocabulary import FORMS
+from topomap.questions import statements
+from topomap.questions.ask import Inquiry
+from topomap.runtime.limits import LARGEST
+from topomap.runtime.watch import Attempt, Watch
+
+
+@dataclass(frozen=True)
+class StatementAnswer:
+    """What is known of a ``statement``: whether it ``holds``, in "all" maps, in "some" and not in
+    others, or in "none"; else it is "not settled". ``witness`` is a map in which it holds,
+    ``counter`` one in which it does not; None where none was found. ``note`` says why it holds
+    in none, or in all, where what was seen tells so at once."""
+
+    statement: str
+    holds: str
+    witness: Map | None
+    counter: Map | None
+    note: str | None
+
+
+class StatementAnswers(Sequence[StatementAnswer]):
+    """An answer to each statement, in their order."""
+
+    def __init__(
+        self,
+        experience: Experience,
+        query: Query,
+        optimal: bool,
+        inquiry: Inquiry,
+        fault: str | None,
+    ):
+        self.experience, self.query, self.optimal = experience, query, optimal
+        self.inquiry, self.fault = inquiry, fault
+
+        def shown(found: Found | None) -> Map | None:
+            return None if found is None else Map(experience, found)
+
+        self._each = [
+            StatementAnswer(
+                known.statement.text,
+                "none" if inquiry.some is False else known.holds or "not settled",
+                shown(known.witness),
+                shown(known.counter),
+                known.statement.note,
+            )
+            for known in inquiry.each
+        ]
+
+    @overload
+    def __getitem__(self, index: int) -> StatementAnswer: ...
+    @overload
+    def __getitem__(self, index: slice) -> list[StatementAnswer]: ...
+    def __getitem__(self, index: int | slice) -> StatementAnswer | list[StatementAnswer]:
+        return self._each[index]
+
+    def __len__(self) -> int:
+        return len(self._each)
+
+    @property
+    def complete(self) -> bool:
+        """Whether all statements are settled; if not, ``fault`` says why."""
+        return self.fault is None
+
+    @property
+    def has_maps(self) -> bool | None:
+        """Whether there is a map at all; None if that is not settled. If there is none, each
+        statement is said to hold in none, and so would its opposite be."""
+        return self.inquiry.some
+
+    @property
+    def kind(self) -> str:
+        """Of what maps the answers are: "consistent"; "best", if something is minimised;
+        "optimal", or "best so far" if no map is closed; "not settled" until one is found."""
+        return self.inquiry.kind or "not settled"
+
+    @property
+    def cost(self) -> tuple[int, ...]:
+        """What these maps cost, most important first; empty if nothing is minimised."""
+        return self.inquiry.cost
+
+    def lines(self) -> Iterator[str]:
+        """The answer to read, as ``topomap ask`` prints it."""
+        return self.inquiry.lines(self.experience, self.fault)
+
+    def document(self) -> dict[str, Any]:
+        """The answer as ``topomap ask --json`` writes it, but for the name of the instance and
+        the keys that all answers have (``docs/formats.md``)."""
+        return self.inquiry.document(self.experience, self.query, self.optimal)
+
+    def __str__(self) -> str:
+        return "\n".join(self.lines())
+
+
+def ask(
+    experience: Experience,
+    *statement: str,
+    optimal: bool = False,
+    bound: int | None = None,
+    horizon: int | None = None,
+    encoding: str = "fast",
+    timeout: float | None = None,
+    watch: Watch | None = None,
+    **parts: Unpack[Parts],
+) -> StatementAnswers:
+    """Tell of each statement whether it holds in all maps that are consistent with an experience
+    (the paper, sections II and III), in some or in none.
+
+    Parameters:
+        experience: what was seen and done.
+        statement: one or more, such as ``same(3,12)``, ``places < 12``, ``not planar``; what can
+            be said is in ``topomap ask --help``.
+        optimal: of closed maps with consistent boundaries, fewest paths, then fewest places; if
+            there is none, of the best so far, pending gateways allowed.
+        bound: the most places that a map may have.
+        horizon: the last step that counts.
+        encoding: ``fast``, or ``plain``, the rules that state the theory.
+        timeout: seconds after which it stops.
+        watch: that of a command; then ``timeout`` is not used.
+        parts: what the maps are to have.
+
+    Returns:
+        An answer to each statement; what is not settled in time is said to be so.
+
+    Raises:
+        ValueError: no statement, an unknown part or encoding, or a number that cannot be.
+        InputError: a text that is no statement about this experience; one line.
+    """
+    query = query_of(parts, bound=bound, horizon=horizon, encoding=encoding)
+    if not statement:
+        raise ValueError("ask: a statement is wanted, such as same(3,12)")
+    if encoding not in FORMS:
+        raise ValueError(f"encoding={encoding!r}: it is {' or '.join(FORMS)}")
+    seen = experience.cut(LARGEST if horizon is None else horizon)
+    inquiry = Inquiry([statements.parse(text, seen, "ask") for text in statement])
+    with Attempt() as attempt:
+        inquiry.settle(seen, query, optimal, watch or Watch(timeout))
+    return StatementAnswers(seen, query, optimal, inquiry, attempt.fault)

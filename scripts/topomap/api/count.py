@@ -1,0 +1,85 @@
+"""Counting the search tree of an experience."""
+
+from collections.abc import Iterator, Mapping
+from typing import Any, Unpack
+
+from topomap.api.parts import Parts, query_of
+from topomap.model.experience import Experience
+from topomap.model.vocabulary import DEMANDS
+from topomap.paper.statistics import tree
+from topomap.runtime.journal import Journal
+from topomap.runtime.watch import Attempt, Watch
+from topomap.solver.share import Crew
+from topomap.solver.share import crew as crew_of
+
+
+class Counts(Mapping[str, Any]):
+    """The figures of a search tree, by name: ``per_step`` (hypotheses after each step, from 0),
+    ``nodes``, ``maps_built``, ``final``, ``closed``, ``closed_text``, ``optimal``,
+    ``perpendicular``. What was not counted is None. ``fault`` says why not all was, if so."""
+
+    def __init__(self, figures: Mapping[str, Any], fault: str | None):
+        self._figures = dict(figures)
+        self.fault = fault
+
+    @property
+    def complete(self) -> bool:
+        """Whether all was counted."""
+        return self.fault is None
+
+    def __getitem__(self, key: str) -> Any:
+        return self._figures[key]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._figures)
+
+    def __len__(self) -> int:
+        return len(self._figures)
+
+    def __repr__(self) -> str:
+        told = f", partial: {self.fault}" if self.fault else ""
+        return f"Counts({self._figures}{told})"
+
+
+def count(
+    experience: Experience,
+    *,
+    bound: int | None = None,
+    horizon: int | None = None,
+    encoding: str = "fast",
+    timeout: float | None = None,
+    jobs: int = 1,
+    watch: Watch | None = None,
+    journal: Journal | None = None,
+    crew: Crew | None = None,
+    **parts: Unpack[Parts],
+) -> Counts:
+    """Count the search tree by clingo, as the paper's Figure 4 does.
+
+    Parameters:
+        experience: what was seen and done.
+        bound: the most places that a map may have.
+        horizon: the last step that counts.
+        encoding: ``fast``, or ``plain``, the rules that state the theory.
+        timeout: seconds after which it stops.
+        jobs: how many processes do the work.
+        watch, journal, crew: those of a command; then ``timeout`` and ``jobs`` are not used.
+        parts: what the maps are to have; not genus and minimal.
+
+    Returns:
+        The figures.
+
+    Raises:
+        ValueError: an unknown part.
+    """
+    query = query_of(parts, bound=bound, horizon=horizon, encoding=encoding, allowed=DEMANDS)
+    figures: dict[str, Any] = {}
+    with Attempt() as attempt:
+        if crew is not None:
+            tree(experience, query, watch or Watch(timeout), journal or Journal(), figures, crew)
+        else:
+            with crew_of(jobs) as made:
+                tree(
+                    experience, query, watch or Watch(timeout), journal or Journal(), figures, made
+                )
+    return Counts(figures, attempt.fault)

@@ -1,0 +1,138 @@
+"""Why a statement is impossible or certain, or why there is no map."""
+
+from collections.abc import Iterator
+from dataclasses import replace
+from typing import Any, Unpack
+
+from topomap.api.maps import Map
+from topomap.api.parts import Parts, query_of
+from topomap.model.experience import Experience
+from topomap.model.found import Found
+from topomap.model.query import Query
+from topomap.model.vocabulary import DEMANDS
+from topomap.questions import statements
+from topomap.questions.explain import Explainer
+from topomap.questions.explanations import Explanation, Reason
+from topomap.questions.statements import Statement
+from topomap.runtime.limits import LARGEST
+from topomap.runtime.watch import Attempt, Watch
+
+
+class Explained:
+    """A verdict, and the reasons for it."""
+
+    def __init__(
+        self,
+        experience: Experience,
+        query: Query,
+        statement: Statement | None,
+        explanation: Explanation,
+        fault: str | None,
+    ):
+        self.experience, self.query, self.fault = experience, query, fault
+        self.explanation, self._statement = explanation, statement
+
+    @property
+    def statement(self) -> str | None:
+        """The statement; None if it was asked why there is no map."""
+        return self._statement.text if self._statement else None
+
+    @property
+    def verdict(self) -> str:
+        """``impossible``: the statement holds in no map; ``certain``: it holds in all; ``open``:
+        in some, and not in others; ``no map``: there is none at all; ``map``: there are maps,
+        where no statement was asked about; or ``not settled``."""
+        if self.explanation.verdict == "open" and not self._statement:
+            return "map"
+        return self.explanation.verdict or "not settled"
+
+    @property
+    def reasons(self) -> list[Reason]:
+        """The reasons: each has a ``name``, what is ``told`` of it (``words``, ``steps``, ``walk``
+        and ``places``), and ``at``, the dstates of a map that breaks it alone; empty where the
+        verdict needs none, or none were found as yet."""
+        return list(self.explanation.reasons)
+
+    @property
+    def minimal(self) -> bool:
+        """Whether it is verified that the reasons are enough, and that none can be spared."""
+        return self.explanation.minimal
+
+    @property
+    def horizon(self) -> int | None:
+        """After which step it is so already; None where that is not known."""
+        return self.explanation.horizon
+
+    @property
+    def witness(self) -> Map | None:
+        """A map in which the statement holds, or any map if there is none, where the verdict is
+        that there is one; else None."""
+        return self._map(True)
+
+    @property
+    def counter(self) -> Map | None:
+        """A map in which the statement does not hold, where it is open; else None."""
+        return self._map(False)
+
+    def _map(self, holds: bool) -> Map | None:
+        at = self.explanation.maps.get(holds) if self.explanation.verdict == "open" else None
+        return None if at is None else Map(self.experience, Found(at, "consistent"))
+
+    @property
+    def complete(self) -> bool:
+        """Whether all was found; if not, ``fault`` says why."""
+        return self.fault is None
+
+    def lines(self) -> Iterator[str]:
+        """The answer to read, as ``topomap explain`` prints it."""
+        return self.explanation.lines(self.experience, self._statement, self.fault)
+
+    def document(self) -> dict[str, Any]:
+        """The answer as ``topomap explain --json`` writes it, but for the name of the instance
+        and the keys that all answers have (``docs/formats.md``)."""
+        return self.explanation.document(self._statement, self.query)
+
+    def __str__(self) -> str:
+        return "\n".join(self.lines())
+
+
+def explain(
+    experience: Experience,
+    statement: str | None = None,
+    *,
+    bound: int | None = None,
+    horizon: int | None = None,
+    timeout: float | None = None,
+    watch: Watch | None = None,
+    **parts: Unpack[Parts],
+) -> Explained:
+    """Tell why a statement is impossible or certain, or why there is no map: reasons none of
+    which can be spared. (Each is of a rule of the paper, sections II and III, or of what was
+    seen.)
+
+    Parameters:
+        experience: what was seen and done.
+        statement: such as ``same(3,12)``, ``places < 12``, ``not planar``; what can be said is in
+            ``topomap explain --help``. Without one: why there is no map.
+        bound: the most places that a map may have.
+        horizon: the last step that counts.
+        timeout: seconds after which it stops.
+        watch: that of a command; then ``timeout`` is not used.
+        parts: what the maps are to have; not ``genus`` and ``minimal``, since that another map
+            is better is no reason of this kind.
+
+    Returns:
+        The verdict and the reasons; what was not found in time is said to be so.
+
+    Raises:
+        ValueError: an unknown part, or a number that cannot be.
+        InputError: a text that is no statement about this experience; one line.
+    """
+    query = query_of(parts, bound=bound, horizon=horizon, allowed=DEMANDS)
+    query = replace(query, horizon=None)  # which ends the experience here
+    seen = experience.cut(LARGEST if horizon is None else horizon)
+    asked = None if statement is None else statements.parse(statement, seen, "explain")
+    found = Explanation()
+    with Attempt() as attempt:
+        Explainer(seen, query, asked, watch or Watch(timeout), found).settle()
+    return Explained(seen, query, asked, found, attempt.fault)

@@ -1,0 +1,190 @@
+"""Where to go next, so that the maps are told apart."""
+
+from collections.abc import Iterator, Sequence
+from functools import cached_property
+from typing import Any, Unpack
+
+from topomap.api.maps import Map
+from topomap.api.parts import Parts, query_of
+from topomap.model.experience import Experience
+from topomap.model.found import Found
+from topomap.model.vocabulary import PRUNING
+from topomap.questions import proofs
+from topomap.questions.candidates import Candidates, gather
+from topomap.questions.explore import Untold, plan
+from topomap.questions.plans import Planned
+from topomap.questions.proofs import Checked
+from topomap.questions.standings import Prediction
+from topomap.runtime.limits import LARGEST, LONGEST_WALK
+from topomap.runtime.watch import Watch
+
+OPTIMAL = ("optimal",)  # the maps that are in question, unless told
+
+
+class NextWalk:
+    """A further walk, and what the maps in question predict of it."""
+
+    def __init__(self, among: Candidates, planned: Planned | None):
+        self.among, self.planned = among, planned
+
+    @cached_property
+    def maps(self) -> list[Map]:
+        """The maps in question, in the order in which they are numbered from 1."""
+        each = self.among.each
+        return [
+            Map(self.among.experience, Found(one.at, one.of), number, len(each), self.among.every)
+            for number, one in enumerate(each, 1)
+        ]
+
+    @property
+    def kind(self) -> str:
+        """``apart``: the walk refutes maps whichever is the real one; ``pending``: it leads to a
+        pending gateway, as no walk tells the maps apart; ``settled``: there is one map, and it
+        is closed; ``bisimilar``: no walk ever tells the maps apart, and no gateway is pending;
+        ``no map``: no such map is consistent; ``not settled``: none of these is known."""
+        if self.planned is not None:
+            return self.planned.kind or "not settled"
+        return "not settled" if self.among.fault else "no map"
+
+    @property
+    def turns(self) -> tuple[int, ...]:
+        """The turn of each step of the walk: the slot of the gateway by which the agent leaves,
+        clockwise of the one where it stands. Empty if there is no walk."""
+        return self.planned.plan.turns if self.planned else ()
+
+    @property
+    def drop(self) -> int | None:
+        """After how many steps of the walk the marker is put down; None if it is kept."""
+        return self.planned.plan.drop if self.planned else None
+
+    @property
+    def left(self) -> int | None:
+        """How many of the maps are left in the worst case; None if there are no maps."""
+        return self.planned.plan.left if self.planned else None
+
+    @property
+    def proved(self) -> bool:
+        """Whether no walk leaves fewer maps, nor as few sooner."""
+        return self.planned.plan.proved if self.planned else False
+
+    @property
+    def predictions(self) -> tuple[tuple[Prediction | None, ...], ...]:
+        """What each map predicts of each step: ``view``, ``landmarks`` and ``marker``; None where
+        it predicts nothing, once the walk went through a pending gateway."""
+        return self.planned.plan.predictions if self.planned else ()
+
+    @property
+    def untold(self) -> tuple[Untold, ...]:
+        """The pairs of maps that the walk does not tell apart, and why."""
+        return self.planned.plan.untold if self.planned else ()
+
+    @property
+    def fault(self) -> str | None:
+        """Why there may be other maps, or a better walk; None if neither is so."""
+        return self.planned.fault if self.planned else self.among.fault
+
+    @property
+    def complete(self) -> bool:
+        """Whether the maps are all, and the walk is proved to be best."""
+        return self.fault is None
+
+    def lines(self) -> Iterator[str]:
+        """The answer to read, as ``topomap explore`` prints it."""
+        return self.planned.lines() if self.planned else iter([self.among.lack()])
+
+    def document(self) -> dict[str, Any]:
+        """The answer as ``topomap explore --json`` writes it, but for the name of the instance
+        and the keys that all answers have (``docs/formats.md``)."""
+        return self.planned.document() if self.planned else {"maps": []}
+
+    def proofs(self) -> dict[str, Any]:
+        """Why no walk tells maps apart, as ``--proof`` writes it, for ``check_proofs``."""
+        return proofs.proofs(self.planned) if self.planned else {}
+
+    def __str__(self) -> str:
+        return "\n".join(self.lines())
+
+
+def candidates(
+    experience: Experience,
+    among: str | Sequence[str | Map] = OPTIMAL,
+    *,
+    bound: int | None = None,
+    horizon: int | None = None,
+    timeout: float | None = None,
+    watch: Watch | None = None,
+    **parts: Unpack[Parts],
+) -> Candidates:
+    """The maps that may be the real one. Parameters and errors are those of ``explore``; the
+    maps are in ``each``, and ``facts()`` gives them to ``encodings/explore.lp``."""
+    query = query_of(parts, bound=bound, horizon=horizon, allowed=PRUNING)
+    of = [among] if isinstance(among, str) else among
+    asked = [one if isinstance(one, str) else one.at for one in of]
+    cut = experience.cut(LARGEST if horizon is None else horizon)
+    return gather(experience, cut, query, asked, watch or Watch(timeout))
+
+
+def explore(
+    experience: Experience,
+    among: str | Sequence[str | Map] | Candidates = OPTIMAL,
+    *,
+    marker: bool = False,
+    steps: int = LONGEST_WALK,
+    bound: int | None = None,
+    horizon: int | None = None,
+    timeout: float | None = None,
+    watch: Watch | None = None,
+    **parts: Unpack[Parts],
+) -> NextWalk:
+    """Say where to go next: the shortest further walk that tells the maps apart, or leaves the
+    fewest in the worst case; or the proof that no walk does. (It goes beyond the paper, which
+    maps what was seen.)
+
+    Parameters:
+        experience: what was seen and done.
+        among: the maps that may be the real one: ``optimal`` (the best so far, where none is
+            closed), ``closed``, ``perpendicular`` (and closed), the name of a file of maps, or
+            maps; several for all of them; or what ``candidates`` gave.
+        marker: whether the agent carries a marker, which it may drop once.
+        steps: the most steps of the walk.
+        bound: the most places that a map may have.
+        horizon: the last step that counts.
+        timeout: seconds after which it stops.
+        watch: that of a command; then ``timeout`` is not used.
+        parts: what the maps are to have: ``planar`` and ``perpendicular``.
+
+    Returns:
+        The walk; its ``fault`` says why it is not proved to be the best.
+
+    Raises:
+        ValueError: an unknown part, or a number that cannot be.
+        InputError: a file that cannot be read, or a map that is none of this experience.
+    """
+    if steps < 1:
+        raise ValueError(f"steps={steps}: it must be 1 or more")
+    watch = watch or Watch(timeout)
+    if not isinstance(among, Candidates):
+        among = candidates(experience, among, bound=bound, horizon=horizon, watch=watch, **parts)
+    if not among.each:
+        return NextWalk(among, None)
+    watch.title("the next walk")
+    slots = among.experience.slots
+    made = plan(slots, among.standings(), watch, marker=marker, steps=steps)
+    return NextWalk(among, Planned(among, made, marker, steps))
+
+
+def check_proofs(experience: Experience, path: str, *, horizon: int | None = None) -> Checked:
+    """Check the proofs in a file, which ``--proof`` or ``NextWalk.proofs`` made, without a solver.
+
+    Parameters:
+        experience: what was seen and done.
+        path: the name of the file.
+        horizon: the last step that counts.
+
+    Returns:
+        How many proofs there are, and what is ``wrong`` with them.
+
+    Raises:
+        InputError: there are no proofs in the file.
+    """
+    return proofs.check_proofs(path, experience.cut(LARGEST if horizon is None else horizon))

@@ -1,0 +1,26 @@
+"""Reading instances."""
+
+from pathlib import Path
+
+from topomap.model import experience
+from topomap.model.experience import Experience
+
+
+def read(path: str | Path, noisy: bool = False) -> Experience:
+    """The experience in an instance file (the paper, section II).
+
+    Parameters:
+        path: a file of facts ``slots/1``, ``view/2``, ``turn/2``, and optionally ``landmark/2``,
+            ``drop/1``, ``pick/1``, ``marker/1``; ``-`` is standard input.
+        noisy: allow what can only be a misreading: a turn to a gateway that was not seen, a view
+            without slot 0. For ``solve(..., noise=K)``.
+
+    Returns:
+        The experience: ``slots`` directions a place, ``views`` and ``landmarks`` after each step
+        from 0, ``turns`` of each step from 1, in slots clockwise.
+
+    Raises:
+        InputError: the file cannot be read or is no instance; the message is one line that names
+            file, line, step and fault.
+    """
+    return experience.read(path, noisy)

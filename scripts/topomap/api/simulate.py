@@ -1,0 +1,140 @@
+"""A robot that explores a world which it does not know."""
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, Unpack
+
+from topomap.api.maps import Map
+from topomap.api.parts import Parts, query_of
+from topomap.model.experience import Experience
+from topomap.model.vocabulary import PRUNING
+from topomap.questions.robot import Outcome, start_of
+from topomap.questions.robot import simulate as explored
+from topomap.runtime.limits import MOST_STEPS
+from topomap.runtime.watch import Watch
+from topomap.worlds.environment import Environment
+from topomap.worlds.environment import environment as environment_of
+
+STEPS = 20  # for each way
+
+
+@dataclass(frozen=True)
+class Simulation:
+    """What came of a robot in the environment of that name."""
+
+    name: str
+    outcome: Outcome
+
+    @property
+    def experience(self) -> Experience:
+        """What the robot did and saw."""
+        return self.outcome.experience
+
+    @cached_property
+    def maps(self) -> list[Map]:
+        """The best maps of that, in order."""
+        found, whole = self.outcome.maps, self.outcome.whole
+        return [
+            Map(self.experience, one, number, len(found), whole, name=self.name)
+            for number, one in enumerate(found, 1)
+        ]
+
+    @property
+    def end(self) -> str:
+        """How it ended: "settled" (one closed map is optimal), "bisimilar" (several, which no
+        walk tells apart), "no map", "steps" (as many as it may walk), or why it was cut."""
+        return self.outcome.end
+
+    @property
+    def truth(self) -> bool | None:
+        """Whether the real map is among the maps; None if that is open, as the robot could go no
+        further."""
+        return self.outcome.truth
+
+    @property
+    def steps(self) -> int:
+        """How many steps it walked."""
+        return self.outcome.steps
+
+    @property
+    def tour(self) -> int:
+        """How many steps a tour over every way takes, by one who knows the map."""
+        return self.outcome.tour
+
+    @property
+    def random(self) -> int | None:
+        """How many steps random walks take until they have gone every way: the median; None if
+        most are too long to be walked to the end."""
+        return self.outcome.random
+
+    @property
+    def fault(self) -> str | None:
+        """Why the robot did not come to an end, or None if it did."""
+        return self.outcome.fault
+
+    @property
+    def complete(self) -> bool:
+        """Whether the robot came to an end: more walking would tell it nothing."""
+        return self.fault is None
+
+    def json(self) -> dict[str, Any]:
+        """The same as ``topomap simulate --json`` writes it, but for its format and its end."""
+        return {"environment": self.name, **self.outcome.json()}
+
+    def __str__(self) -> str:
+        """The lines that ``topomap simulate`` prints."""
+        return self.outcome.text(self.name)
+
+
+def simulate(
+    world: str | Environment,
+    *size: int,
+    start: str | None = None,
+    facing: int | None = None,
+    signs: float = 0.0,
+    seed: int = 0,
+    thin: float = 0.3,
+    steps: int | None = None,
+    marker: bool = False,
+    bound: int | None = None,
+    timeout: float | None = None,
+    watch: Watch | None = None,
+    **parts: Unpack[Parts],
+) -> Simulation:
+    """Let a robot explore a world until it has one closed optimal map, or no walk can tell its
+    best maps apart; then hold these against the truth (the paper, section IV).
+
+    Parameters:
+        world: ``grid``, ``torus``, ``cylinder``, ``maze``, ``hexagons`` or ``triangles``, with
+            ``size``, its rows and columns; or an environment that was made before.
+        start: the first place, such as ``0,2``; the smallest by default.
+        facing: the gateway stood at first, a slot; the smallest by default.
+        signs: the share of places, 0 to 1, that carry their own name as a landmark.
+        seed: for signs and maze.
+        thin: the share of the ways of a maze, 0 to 1, that are taken away.
+        steps: walk so many at most; 20 for each way by default.
+        marker: whether the robot carries a marker that it may put down.
+        bound: what it takes for granted: so many places at most.
+        timeout: stop after so many seconds.
+        watch: what stops the search and shows its progress, instead of ``timeout``.
+        parts: what it takes for granted: ``planar``, ``perpendicular``.
+
+    Returns:
+        What came of it: ``end``, ``maps``, ``truth``, ``experience``, ``steps``, and for
+        comparison ``tour`` and ``random``. Where it was cut, ``fault`` says why.
+
+    Raises:
+        ValueError: an unknown world or part, or no rows and columns.
+        InputError: a world that cannot be mapped, such as a torus, or no such place or gateway.
+    """
+    query = query_of(parts, bound=bound, allowed=PRUNING)
+    if isinstance(world, str):
+        if len(size) != 2:
+            raise ValueError(f"{world}: rows and columns are wanted, not {len(size)} numbers")
+        world = environment_of(world, *size, thin=thin, seed=seed)
+    if signs:
+        world = world.signed(signs, seed)
+    there, dstate = start_of(world, start, facing)
+    most = min(STEPS * len(there.links) // 2, MOST_STEPS) if steps is None else steps
+    watch = Watch(timeout) if watch is None else watch
+    return Simulation(world.name, explored(there, dstate, query, watch, most, marker))

@@ -1,0 +1,53 @@
+"""Judging instance files without solving anything."""
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from topomap.model import validation
+
+
+@dataclass(frozen=True)
+class Validation:
+    """What is wrong with an instance file, and what in it looks like a mistake.
+
+    ``valid`` tells whether every command takes it. ``faults`` and ``warnings`` are dictionaries
+    with the ``line`` and ``step``, or None, and the words under ``fault`` or ``warning``.
+    """
+
+    told: dict[str, Any]
+
+    @property
+    def valid(self) -> bool:
+        return bool(self.told["valid"])
+
+    @property
+    def faults(self) -> list[dict[str, Any]]:
+        return list(self.told["faults"])
+
+    @property
+    def warnings(self) -> list[dict[str, Any]]:
+        return list(self.told["warnings"])
+
+    def document(self) -> dict[str, Any]:
+        """All that is known, as ``topomap validate --json`` writes it."""
+        return dict(self.told)
+
+    def lines(self) -> list[str]:
+        """The same in lines to read."""
+        return list(validation.lines(self.told))
+
+    def __str__(self) -> str:
+        return "\n".join(self.lines())
+
+
+def validate(path: str | Path) -> Validation:
+    """Judge an instance file.
+
+    Parameters:
+        path: the file; ``-`` is standard input.
+
+    Returns:
+        What is wrong with it, and warnings. A file that cannot be read has one fault.
+    """
+    return Validation(validation.judged(str(path)))

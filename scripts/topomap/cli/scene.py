@@ -1,0 +1,36 @@
+"""The map that ``draw``, ``show`` and ``export`` are asked for."""
+
+import argparse
+from typing import TYPE_CHECKING
+
+from topomap.model.vocabulary import PRUNING
+from topomap.runtime.errors import InputError, say
+from topomap.runtime.status import exit_status
+
+if TYPE_CHECKING:
+    from topomap.drawing.scenes import Scene
+
+
+def scene_of(args: argparse.Namespace) -> "tuple[Scene | None, int]":
+    """The map, and the exit status: partial, if it may not be the best."""
+    from topomap.drawing.scenes import scenes_of
+    from topomap.model import words
+    from topomap.model.query import Query
+    from topomap.runtime.extras import need
+    from topomap.runtime.watch import heeding
+
+    need("draw", f"topomap {args.command}")
+    parts = frozenset(part for part in PRUNING if getattr(args, part))
+    with heeding(args.timeout) as watch:
+        query = Query(parts, args.bound, args.horizon)
+        found, fault = scenes_of(args.file, query, watch, args.given)
+    number = args.map or 1
+    source = args.file if args.given is None else args.given
+    if fault:
+        say(f"{args.file}: partial: {fault}")
+    elif not found:
+        say(f"{args.file}: no map is consistent with it")
+    elif number > len(found):
+        many = words.number(len(found), "map")
+        raise InputError(f"{source}: it has {many}, there is no map {number}")
+    return (found[number - 1] if number <= len(found) else None), exit_status(fault, bool(found))

@@ -1,0 +1,170 @@
+"""What the page tells of an exploration, found out within a time limit: the best maps, the replay,
+drawings, and counts by clingo."""
+
+import time
+from collections.abc import Iterator
+from dataclasses import replace
+
+from topomap.documents import maps
+from topomap.documents.beginnings import beginning
+from topomap.drawing import scenes, shapes
+from topomap.drawing.ready import ready
+from topomap.drawing.scenes import MOST_PLACES, Scene
+from topomap.drawing.shapes import Drawing
+from topomap.model.experience import Experience
+from topomap.model.found import Cube
+from topomap.model.query import Query
+from topomap.page.replay import SHOWN, Step, replay
+from topomap.runtime.errors import InputError
+from topomap.runtime.limits import LARGEST
+from topomap.runtime.watch import Attempt, Watch
+from topomap.solver import solving
+
+SMALL = 100  # places in a small picture, at most
+
+
+def given_maps(file: str, path: str, whole: Experience, query: Query) -> list[Scene]:
+    """The maps of an instance in a file, for the page to tell of. Raises InputError, one line,
+    where they are none of the hypotheses that it counts."""
+    cut = whole.cut(LARGEST if query.horizon is None else query.horizon)
+    demands = sorted(query.parts)
+    demands += [] if query.places is None else [f"bound({query.places})"]
+    documents = maps.of_instance(maps.read_maps(file), path)
+    made: list[Scene] = []
+    for document in documents:
+        many = len(document.best)
+        for number, (place, entry) in enumerate(document.best, 1):
+            where = f"{document.where}: map {place}"
+            if entry.get("misread"):
+                raise InputError(f"{where}: it disbelieves what was seen; the page is of all of it")
+            at = beginning(where, entry["at"], whole, cut, demands)
+            rest = path, number, many, document.kind
+            made.append(Scene(cut.map_of(at), at, *rest, whole=document.whole))
+    if len({scene.at for scene in made}) < len(made):
+        raise InputError(f"{file}: a map is there twice")
+    if not made:
+        raise InputError(f"{file}: no maps of {path} in it")
+    return made
+
+
+class Exploration:
+    """What the page tells of an exploration: of its best maps, or of those that are ``given``;
+    ``faults`` are what it lacks, and why; ``whole`` tells whether the maps are all of their
+    kind."""
+
+    def __init__(
+        self,
+        name: str,
+        seen: Experience,
+        query: Query,
+        most: int,
+        watch: Watch,
+        given: list[Scene] | None = None,
+    ):
+        self.name, self.seen, self.query, self.watch = name, seen, query, watch
+        self.most = most  # maps to be drawn
+        self.faults: list[str] = []
+        self.given = given is not None
+        self.best: list[Scene] = given or []
+        self.whole = all(scene.whole for scene in self.best)
+        self.steps: list[Step] = []
+        self.shapes: dict[Cube, Drawing] = {}  # small ones, but for the best maps
+        self.counts: dict[str, list[int | None]] = {
+            which: [None] * (seen.steps + 1) for which in ("without planarity", "with planarity")
+        }
+
+    def look(self, seconds: float) -> None:
+        """Find out what can be found in that time: no part of the work takes it all."""
+        now = time.monotonic()
+        self.watch.deadline.at = now + seconds / 3
+        if not self.given:
+            self.best, fault = scenes.best(self.seen, self.name, self.query, self.watch)
+            self.whole = not fault
+            if fault:
+                self.faults.append(f"the best maps: {fault}")
+        self.watch.deadline.at = now + seconds / 2
+        ats = [tuple(scene.at) for scene in self.best]
+        self.steps, fault = replay(self.seen, self.query, ats, self.watch)
+        if fault:
+            self.faults.append(f"what was refused: {fault}")
+        self.watch.deadline.at = now + seconds * 2 / 3
+        self._until("pictures", self._draw())
+        self.watch.deadline.at = now + seconds
+        self._until("counts by clingo", self._count())
+        self.watch.title("")
+
+    def _until(self, what: str, work: Iterator[None]) -> None:
+        with Attempt() as attempt:
+            self.watch.tick()
+            for _ in work:
+                self.watch.tick()
+        if attempt.fault:
+            self.faults.append(f"{what}: {attempt.fault}")
+
+    def _count(self) -> Iterator[None]:
+        """Count the hypotheses after each step, by clingo."""
+        found = self.watch.found
+        parts = [self.query.parts - {"planar"}, self.query.parts | {"planar"}]
+        queries = [replace(self.query, parts=some) for some in parts]
+        for step in range(self.seen.steps + 1):
+            self.watch.title(f"counts after step {step} of {self.seen.steps}")
+            for query, numbers in zip(queries, self.counts.values(), strict=True):
+                asked = replace(query, horizon=step)
+                numbers[step], _ = solving.count(self.seen, asked, (), self.watch, grown=False)
+                self.watch.found = found
+                yield
+            self._agree(step)
+
+    @property
+    def counted(self) -> list[int | None]:
+        """The hypotheses after each step that the replay is about, by clingo."""
+        return self.counts[f"with{'' if 'planar' in self.query.parts else 'out'} planarity"]
+
+    def _agree(self, step: int) -> None:
+        ours, theirs = self.steps[step].alive, self.counted[step]
+        if ours is not None and ours != theirs:
+            raise RuntimeError(f"{self.name}: step {step}: the search has {ours}, clingo {theirs}")
+
+    def alive(self, step: int) -> int | None:
+        """How many hypotheses there are after a step, if it is known."""
+        by_clingo = self.counted[step]
+        return self.steps[step].alive if by_clingo is None else by_clingo
+
+    def _keep(self, at: Cube, drawn: Drawing | None) -> None:
+        if drawn:
+            self.shapes[at] = drawn
+
+    def _draw(self) -> Iterator[None]:
+        """Drawings of the best maps, and small ones: of the first of each, then of the others."""
+        ready()
+        yield from self._draw_best(self.best[: min(1, self.most)])
+        yield from self._draw_shown(0)
+        yield from self._draw_best(self.best[1 : self.most])
+        for rank in range(1, SHOWN):
+            yield from self._draw_shown(rank)
+
+    def _draw_best(self, some: list[Scene]) -> Iterator[None]:
+        for scene in some:
+            self.watch.title(f"picture of map {scene.number}")
+            if len(scene.world.stars) <= MOST_PLACES:
+                self._keep(tuple(scene.at), shapes.drawing(scene.world, scene.ahead))
+                yield
+
+    def _draw_shown(self, rank: int) -> Iterator[None]:
+        """Of each step one, from the last step back: that of a map which grows to another one
+        that is shown is a part of the other's."""
+        last = self.seen.steps
+        for number in range(last, -1, -1):
+            self.watch.title(f"pictures of step {number} of {last}")
+            for at in self.steps[number].shown[rank : rank + 1]:
+                world = self.seen.map_of(at)
+                if at in self.shapes or len(world.stars) > SMALL:
+                    continue
+                later = self.steps[number + 1].shown if number < last else []
+                grown = (self.shapes.get(more) for more in later if more[: number + 1] == at)
+                parts = (shapes.part_of(whole, world) for whole in grown if whole)
+                drawn = next((part for part in parts if part), None)
+                if drawn is None:
+                    drawn = shapes.drawing(world, Scene(world, at, self.name).ahead, small=True)
+                self._keep(at, drawn)
+                yield

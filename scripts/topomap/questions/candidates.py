@@ -1,0 +1,125 @@
+"""The maps among which the real one may be: those between which a further walk is to decide."""
+
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+
+from topomap.documents.beginnings import beginning
+from topomap.documents.maps import read_maps
+from topomap.drawing import scenes
+from topomap.model import words
+from topomap.model.experience import DState, Experience
+from topomap.model.found import steps_json
+from topomap.model.query import Query
+from topomap.questions.standings import Standing, standing
+from topomap.runtime.errors import InputError, printable
+from topomap.runtime.watch import Attempt, Watch
+from topomap.solver import solving
+
+At = tuple[DState, ...]
+KINDS = {
+    "optimal": (),
+    "closed": ("closed",),
+    "perpendicular": ("closed", "perpendicular"),
+}  # the kinds of maps, and the parts that they have; of optimal ones see scenes.best
+GIVEN = "given"  # what a map is said to be that the caller has
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """A map in question: the dstate after each step, and what it is."""
+
+    at: At
+    of: str
+
+
+@dataclass(frozen=True)
+class Candidates:
+    """The maps in question, each once, in order; ``fault`` says why they may not be all.
+    ``every``: there are no others of the kinds that were asked for."""
+
+    experience: Experience
+    each: tuple[Candidate, ...]
+    every: bool
+    fault: str | None = None
+
+    def standings(self) -> list[Standing]:
+        """The maps, and where the agent stands in each."""
+        return [standing(self.experience, one.at) for one in self.each]
+
+    def facts(self, marker: bool = False) -> str:
+        """The maps as facts for ``encodings/explore.lp`` and its like; ``marker``: the agent
+        carries one."""
+        lines = [self.experience.facts().rstrip()]
+        for number, one in enumerate(self.each, 1):
+            lines.append(f"% map {number}: {printable(one.of)}")
+            at = enumerate(one.at)
+            lines.append(" ".join(f"map({number},{t},{place},{slot})." for t, (place, slot) in at))
+        return "\n".join(lines) + "\n" + "carried.\n" * marker
+
+    def words(self) -> str:
+        """How many there are of each kind."""
+        kinds: dict[str, int] = {}
+        for one in self.each:
+            kinds[one.of] = kinds.get(one.of, 0) + 1
+        found = " found so far" * bool(self.fault)
+        of = ", ".join(f"{number:,} {printable(kind)}" for kind, number in kinds.items())
+        return f"{words.number(len(self.each), 'map')}{found} ({of})"
+
+    def lack(self) -> str:
+        """What to say if there is none."""
+        if self.fault:
+            return f"no map found yet; partial: {self.fault}"
+        return "no such map is consistent with it"
+
+
+def gather(
+    whole: Experience,
+    experience: Experience,
+    query: Query,
+    among: Sequence[str | At],
+    watch: Watch,
+) -> Candidates:
+    """The maps of an experience, the beginning of a whole one, that are named by their kind (one
+    of KINDS) or by a file, or are given. Raises InputError where one is no map of it."""
+    found: dict[At, str] = {}
+    fault = None
+    for number, one in enumerate(among, 1):
+        if not isinstance(one, str):
+            at = beginning(f"among: map {number}", steps_json(one), whole, experience)
+            found.setdefault(at, GIVEN)
+        elif one not in KINDS:
+            for at in _of_file(one, whole, experience, watch):
+                found.setdefault(at, one)
+        elif fault is None:
+            watch.title(f"{one} maps")
+            if one == "optimal":
+                best, fault = scenes.best(whole, "", query, watch)
+                for scene in best:
+                    found.setdefault(tuple(scene.at), scene.kind)
+                continue
+            with Attempt() as attempt:
+                for at in _of_kind(one, whole, query, watch):
+                    found.setdefault(at, one)
+            fault = attempt.fault
+    every = not fault and all(one in KINDS for one in among)
+    each = tuple(Candidate(at, of) for at, of in sorted(found.items()))
+    return Candidates(experience, each, every, fault)
+
+
+def _of_kind(kind: str, whole: Experience, query: Query, watch: Watch) -> Iterable[At]:
+    """All maps of a kind."""
+    having = query.having(*KINDS[kind])
+    return (one.at for one in solving.hypotheses(whole, having, watch) if one is not None)
+
+
+def _of_file(path: str, whole: Experience, experience: Experience, watch: Watch) -> Iterator[At]:
+    """The maps of a file, cut to the experience. Raises InputError if one is none of its
+    hypotheses."""
+    documents = read_maps(path)
+    if not any(document.maps for document in documents):
+        raise InputError(f"{path}: no maps in it")
+    for document in documents:
+        for number, entry in enumerate(document.maps, 1):
+            watch.found += 1
+            where = f"{document.where}: map {number}"
+            yield beginning(where, entry["at"], whole, experience)

@@ -1,0 +1,126 @@
+"""Maps in which an agent stands somewhere: what each predicts that will be seen."""
+
+from collections.abc import Hashable, Iterable, Sequence
+from dataclasses import dataclass
+
+from topomap.documents.bisimulation import Chart
+from topomap.model.experience import DState, Experience
+from topomap.model.topology import Gateway, Place, TopologicalMap
+
+
+@dataclass(frozen=True)
+class Standing:
+    """A map, the dstate where the agent stands in it, and the place where the marker lies, if
+    it is out."""
+
+    world: TopologicalMap
+    dstate: Gateway
+    marker: Place | None = None
+
+    def chart(self) -> Chart:
+        """The same as plain data, for the checker."""
+        world = self.world
+        rest = world.landmarks, self.marker
+        return Chart(world.slots, world.stars, world.links, self.dstate, *rest)
+
+
+def standing(experience: Experience, at: tuple[DState, ...]) -> Standing:
+    """The map of a hypothesis, and where the agent stands in it; the marker lies where it was
+    put down last, if it was not taken up since."""
+    down = None
+    for step in range(experience.steps + 1):
+        down = None if step in experience.picks else down
+        down = step if step in experience.drops else down
+    return Standing(experience.map_of(at), at[-1], None if down is None else at[down][0])
+
+
+@dataclass(frozen=True)
+class Prediction:
+    """What a map says will be seen: gateways clockwise of the one arrived at, landmarks, and
+    whether the marker."""
+
+    view: frozenset[int]
+    landmarks: frozenset[str] = frozenset()
+    marker: bool = False
+
+    @property
+    def signs(self) -> tuple[tuple[str, ...], bool]:
+        """What there is but gateways."""
+        return tuple(sorted(self.landmarks)), self.marker
+
+
+def sight(world: TopologicalMap, dstate: Gateway, marker: Place | None) -> Prediction:
+    place = dstate[0]
+    landmarks = world.landmarks.get(place, frozenset())
+    return Prediction(world.view(dstate), landmarks, marker is not None and marker == place)
+
+
+def predict(
+    standing: Standing, turns: Sequence[int], drop: int | None = None
+) -> tuple[Prediction | None, ...]:
+    """What a map says will be seen after each step of a walk; None once the walk goes through a
+    pending gateway, or cannot go on."""
+    world, dstate, marker = standing.world, standing.dstate, standing.marker
+    found: list[Prediction | None] = []
+    for step, turn in enumerate(turns):
+        if drop == step:
+            marker = dstate[0]
+        out = dstate[0], (dstate[1] + turn) % world.slots
+        if out not in world.links:
+            break
+        dstate = world.links[out]
+        found.append(sight(world, dstate, marker))
+    return (*found, *[None] * (len(turns) - len(found)))
+
+
+def tells(one: Sequence[Prediction | None], other: Sequence[Prediction | None]) -> bool:
+    """Whether a walk tells maps apart, by what they predict of it."""
+    return any(a and b and a != b for a, b in zip(one, other, strict=True))
+
+
+def shape(standing: Standing) -> Hashable:
+    """What maps have in common that are the same but for the names of places, with the agent at
+    the same dstate."""
+    world, slots = standing.world, standing.world.slots
+    first = {standing.dstate[0]: (0, standing.dstate[1])}
+    form = []
+    for place in (waiting := [standing.dstate[0]]):
+        _, base = first[place]
+        ends: list[tuple[int, ...]] = []
+        for turn in sorted(world.view((place, base))):
+            end = world.links.get((place, (base + turn) % slots))
+            if end is None:
+                ends.append((turn,))
+                continue
+            if end[0] not in first:
+                first[end[0]] = len(first), end[1]
+                waiting.append(end[0])
+            number, slot = first[end[0]]
+            ends.append((turn, number, (end[1] - slot) % slots))
+        form.append((tuple(ends), *sight(world, (place, base), standing.marker).signs))
+    return slots, tuple(form)
+
+
+def facts(maps: Iterable[tuple[int, Standing]]) -> str:
+    """Maps as facts for ``explore.lp`` and its like, places numbered in their order."""
+    lines: list[str] = []
+    for number, standing in maps:
+        world = standing.world
+        if not lines:
+            lines.append(f"slots({world.slots}).")
+        index = {place: count for count, place in enumerate(world.stars)}
+        lines += [f"gateway({number},{index[place]},{slot})." for place, slot in world.gateways()]
+        lines += [
+            f"link({number},{index[a[0]]},{a[1]},{index[b[0]]},{b[1]})."
+            for a, b in world.links.items()
+        ]
+        lines += [
+            f"sign({number},{index[place]},{term})."
+            for place in world.stars
+            for term in sorted(world.landmarks.get(place, ()))
+        ]
+        place, slot = standing.dstate
+        lines.append(f"stands({number},{index[place]},{slot}).")
+        if standing.marker is not None:
+            lines.append(f"lies({number},{index[standing.marker]}).")
+    return "\n".join(lines) + "\n"
