@@ -80,7 +80,7 @@ test-long: $(TOOLS)
 	$(BIN)/pytest -n $(JOBS) --tried results/tried.json
 
 mutate: $(TOOLS)
-	$(BIN)/python tests/mutate.py --jobs $(JOBS) --known build/mutants.txt
+	PYTHONPATH=tests $(BIN)/python -m oracles.rule_mutation --jobs $(JOBS) --known build/mutants.txt
 
 lint: $(TOOLS)
 	$(BIN)/ruff check scripts tests

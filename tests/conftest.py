@@ -13,7 +13,7 @@ from pathlib import Path
 import clingo
 import hypothesis  # noqa: F401 -- else at the end, beside threads: Python 3.11 has a fault there
 import pytest
-from oracle import Hypothesis, best, tree
+from oracles.brute_force import Hypothesis, best, tree
 from topomap.cli import main
 from topomap.model.vocabulary import OPTIMIZING
 from topomap.runtime.files import output

@@ -18,7 +18,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-import walks
+from oracles import walks
 from topomap.model.experience import DState, read
 from topomap.model.query import Query
 from topomap.questions.standings import Standing

@@ -1,0 +1,249 @@
+"""The follower: after each step it says what is found from scratch, and a step that was taken
+back leaves no trace."""
+
+import random
+from dataclasses import replace
+
+import clingo
+import pytest
+from conftest import ENCODINGS, ROOT, TRIED, plain
+from oracles.brute_force import Hypothesis, best, certain, tree
+from oracles.worlds import WORLDS, marks, random_experience
+from topomap.model.experience import read
+from topomap.model.query import Query
+from topomap.runtime.watch import Watch
+from topomap.search import traversal
+from topomap.solver import online, solving
+from topomap.solver.boundaries import crossed
+from topomap.solver.online import Certain, OnlineSolver
+
+WATCH = Watch()
+
+
+def begun(experience, planar=False, bound=None, most=online.MOST_COUNTED):
+    start = experience.views[0], experience.landmarks[0]
+    return OnlineSolver(experience.slots, *start, planar, bound, most, marks(experience, 0))
+
+
+def go(follower, experience, step):
+    turn = experience.turns[step - 1]
+    seen = experience.views[step], experience.landmarks[step], marks(experience, step)
+    follower.step(turn, *seen)
+
+
+def agrees(status, experience, level):
+    """Demand that a status is what the oracle's hypotheses say."""
+    assert status.fault is None
+    assert (status.hypotheses, status.exact) == (len(level), True)
+    if not level:
+        assert status.none_since is not None
+        assert status.best == ()
+        assert status.kind is None
+        return
+    seen = plain(experience)
+    wanted = best(seen, level, closed=True)
+    kind = "optimal" if wanted else "best so far"
+    wanted = wanted or best(seen, level, closed=False)
+    assert set(status.best) == wanted
+    assert len(status.best) == len(wanted)
+    if wanted:
+        assert status.kind == kind
+        assert status.cost == Hypothesis(seen, next(iter(wanted))).cost()
+    same, new = certain(level)
+    assert (status.certain.same, status.certain.new) == (same, new)
+    for t, s, u, r in status.certain.linked:
+        for at in level:
+            link = Hypothesis(seen, at).link
+            (p, here), (q, there) = at[t], at[u]
+            slots = experience.slots
+            assert link[p, (here + s) % slots] == (q, (there + r) % slots)
+
+
+def follow_all(experience, planar=False, bound=None):
+    """Hold each step against the oracle; the statuses."""
+    levels = tree(plain(experience), planar, bound)
+    follower = begun(experience, planar, bound)
+    for step, level in enumerate(levels):
+        if step:
+            go(follower, experience, step)
+        status = follower.status(WATCH)
+        agrees(status, experience.cut(step), level)
+        TRIED["statuses of a follower"] += 1
+        yield status
+
+
+@pytest.mark.parametrize("planar", [False, True])
+@pytest.mark.parametrize("name", WORLDS)
+def test_each_step_of_the_worlds(name, planar):
+    assert list(follow_all(WORLDS[name], planar))
+
+
+@pytest.mark.parametrize("cases", [30, pytest.param(800, marks=pytest.mark.long)])
+def test_each_step_of_random_experiences(cases):
+    for number in range(cases):
+        draw = random.Random(f"online {number}")
+        experience = random_experience(draw, draw.choice([6, 9, 12]))
+        bound = draw.choice([None, None, 3, 5])
+        assert list(follow_all(experience, draw.random() < 0.5, bound))
+
+
+@pytest.mark.parametrize("cases", [30, pytest.param(1500, marks=pytest.mark.long)])
+def test_each_step_of_walks_with_a_marker(cases):
+    told = 0
+    for number in range(cases):
+        draw = random.Random(f"online marker {number}")
+        experience = random_experience(draw, draw.choice([6, 9, 12]), marker=True)
+        planar = draw.random() < 0.5
+        *_, last = follow_all(experience, planar)
+        bare = replace(experience, **dict.fromkeys(("drops", "picks", "markers"), frozenset()))
+        told += last.hypotheses < len(tree(plain(bare), planar)[-1])
+    assert told > cases // 5  # in so many the marker has refuted something
+
+
+@pytest.mark.parametrize(
+    ("name", "planar", "bound"),
+    [
+        ("grid-3x3-snake", False, None),
+        ("grid-3x3-snake", True, None),
+        ("grid-3x4-paper", True, None),
+        pytest.param("grid-3x4-paper", False, None, marks=pytest.mark.long),
+        pytest.param("grid-4x4-snake", True, 16, marks=pytest.mark.long),
+        pytest.param("manhattan-tour20", False, None, marks=pytest.mark.long),
+        pytest.param("manhattan-tour20", True, None, marks=pytest.mark.long),
+    ],
+)
+def test_the_papers_instances(name, planar, bound):
+    """The number of hypotheses by the search, the best maps by the solver, from scratch."""
+    experience = read(ROOT / f"instances/{name}.lp")
+    query = Query(frozenset(["planar"] if planar else ()), bound)
+    levels = [0] * (experience.steps + 1)
+    for node in traversal.depth_first(traversal.root(experience, query)):
+        levels[node.steps] += 1
+    follower = begun(experience, planar, bound)
+    for step, level in enumerate(levels):
+        if step:
+            go(follower, experience, step)
+        status = follower.status(WATCH)
+        assert (status.hypotheses, status.exact) == (level, True)
+        if step % 4 and step < experience.steps:
+            continue
+        found = [one for one in solving.best(experience.cut(step), query, WATCH) if one.proved]
+        assert sorted(one.at for one in found) == list(status.best)
+        assert {(one.kind, one.cost) for one in found} == {(status.kind, status.cost)}
+
+
+def test_steps_that_were_taken_back_leave_no_trace():
+    for number in range(12):
+        draw = random.Random(f"undo {number}")
+        experience = random_experience(draw, 9, marker=number % 2 > 0)
+        planar = draw.random() < 0.5
+        follower = begun(experience, planar)
+        true, step = begun(experience, planar), 0
+        while step < experience.steps:
+            # Steps that lead elsewhere; some are asked about.
+            for _ in range(draw.randint(0, 3)):
+                turn = draw.choice(sorted(follower.experience.views[-1]))
+                rest = range(1, experience.slots)
+                view = {0, *(slot for slot in rest if draw.random() < 0.5)}
+                known = follower.experience
+                out = max(known.drops, default=-1) >= max([0, *known.picks])
+                marked = draw.choice([["marker"], ["pick"], []] if out else [["drop"], []])
+                sign = frozenset(draw.choice(["", "a"]))
+                follower.step(turn, frozenset(view), sign, frozenset(marked))
+                if draw.random() < 0.5:
+                    follower.status(WATCH)
+            back = follower.experience.steps - step
+            again = draw.randint(0, step) if draw.random() < 0.3 else 0
+            if back + again:
+                follower.undo(back + again)
+            for more in range(step - again + 1, step + 1):
+                go(follower, experience, more)
+            assert follower.experience == true.experience
+            assert follower.status(WATCH) == true.status(WATCH)
+            step += 1
+            go(follower, experience, step)
+            go(true, experience, step)
+        assert follower.status(WATCH) == true.status(WATCH)
+
+
+def test_no_hypothesis_is_left_and_undo_mends_it():
+    follower = OnlineSolver(2, frozenset({0, 1}), frozenset({"a"}))
+    follower.step(1, frozenset({0}))
+    whole = follower.status(WATCH)
+    follower.step(0, frozenset({0, 1}), frozenset({"b"}))  # back where there was a sign a
+    assert follower.status(WATCH).none_since == 2
+    follower.step(0, frozenset({0}))
+    status = follower.status(WATCH)
+    assert (status.hypotheses, status.none_since, status.best) == (0, 2, ())
+    follower.undo(2)
+    assert follower.status(WATCH) == whole
+    follower.step(0, frozenset({0, 1}), frozenset({"a"}))
+    assert follower.status(WATCH).hypotheses == 1
+
+
+@pytest.mark.parametrize("most", [1, 5, 40, 300])
+def test_more_than_are_counted(most):
+    """And counted again when they are fewer."""
+    experience = read(ROOT / "instances/grid-3x4-paper.lp").cut(17)
+    numbers = [len(level) for level in tree(plain(experience))]
+    follower = begun(experience, most=most)
+    for step, number in enumerate(numbers):
+        if step:
+            go(follower, experience, step)
+        told, exact = follower.count(WATCH)
+        assert told == number <= most if exact else -1 <= told < number
+        if step == experience.steps:
+            wanted = None if told < 0 else told
+            assert follower.status(WATCH).hypotheses == wanted
+    assert any(number > most for number in numbers)
+    assert exact is (most == 300)
+
+
+def test_boundaries_are_those_of_the_definition():
+    """And the steps that are told make them so by themselves."""
+    broken = 0
+    for number in range(60):
+        draw = random.Random(f"boundaries {number}")
+        experience = random_experience(draw, 9)
+        for at in tree(plain(experience))[-1]:
+            whole = Hypothesis(plain(experience), at)
+            reasons = crossed(experience.slots, experience.turns, at)
+            assert bool(reasons) is not whole.boundary()
+            broken += bool(reasons)
+            for steps in reasons:
+                part = Hypothesis(plain(experience), at)
+                ends = {part.leaves(step) for step in steps}
+                ends |= {part.link[end] for end in ends}
+                part.link = {one: two for one, two in part.link.items() if one in ends}
+                assert not part.boundary()
+    assert broken > 30
+
+
+def test_stock_clingo_drives_it():
+    """As its header says, and with the whole instance given at once."""
+    experience = read(ROOT / "instances/grid-3x3-snake.lp")
+    numbers = [len(level) for level in tree(plain(experience), planar=True, bound=9)]
+    head, *lines = experience.facts().splitlines()
+    for at_once in (False, True):
+        messages = []
+        options = ["0", "--project", "--opt-mode=ignore", "-c", "places=9"]
+        control = clingo.Control(options, logger=lambda _, text, to=messages: to.append(text))
+        control.load(str(ENCODINGS / "online.lp"))
+        control.add("base", [], " ".join([head, *(lines if at_once else [])]))
+        control.ground([("base", [])])
+        for step, line in enumerate(lines):
+            control.add(f"facts{step}", [], "" if at_once else line)
+            number = [clingo.Number(step)]
+            parts = [(part, number) for part in ("step", "planar", "bound")]
+            control.ground([(f"facts{step}", []), *parts])
+            control.solve()
+            models = control.statistics["summary"]["models"]["enumerated"]
+            assert int(models) == numbers[step]
+        assert not messages
+
+
+def test_what_was_not_certain_before():
+    one = Certain(frozenset({(0, 1)}), frozenset({0}), frozenset())
+    both = Certain(frozenset({(0, 1), (0, 2)}), frozenset({0, 3}), frozenset({(0, 1, 2, 3)}))
+    new = Certain(frozenset({(0, 2)}), frozenset({3}), frozenset({(0, 1, 2, 3)}))
+    assert both.since(one) == new

@@ -1,0 +1,203 @@
+"""A second way to every count: the search of the paper's Figure 2, written plainly.
+
+It shares nothing with the encodings or with the package: it reads bare facts, keeps
+whole maps as dictionaries, and recomputes each property from its definition. It is
+slow on purpose, and meant for small experiences.
+
+An experience is ``(slots, views, turns, landmarks, marker)``: ``views[t]`` the set of slots
+seen after step t, ``turns[t]`` the turn of step t (``turns[0]`` is unused),
+``landmarks[t]`` the set of landmarks recognised after step t; ``marker`` is what was done
+with the marker and when, as ``(t, "put")``, ``(t, "took")``, ``(t, "saw")``. A hypothesis is the
+tuple of its ``(place, gateway)`` after each step, as ``at/3`` gives them.
+"""
+
+from itertools import combinations
+
+
+class Hypothesis:
+    """A map, and the dstates through which the agent went."""
+
+    def __init__(self, experience, at):
+        self.slots, views, self.turns, *_ = experience
+        self.at = at
+        self.stars = {p: frozenset(views[p]) for p, _ in at}
+        self.link = {}
+        for t in range(1, len(at)):
+            here, there = self.leaves(t), at[t]
+            self.link[here], self.link[there] = there, here
+
+    def leaves(self, t):
+        place, gateway = self.at[t - 1]
+        return place, (gateway + self.turns[t]) % self.slots
+
+    def gateways(self):
+        return [(p, s) for p in sorted(self.stars) for s in sorted(self.stars[p])]
+
+    def pending(self):
+        return [g for g in self.gateways() if g not in self.link]
+
+    def opposite(self, gateway):
+        return gateway[0], (gateway[1] + self.slots // 2) % self.slots
+
+    def ray(self, gateway):
+        """Gateways of arrival when walking out of ``gateway`` straight on."""
+        met = []
+        while gateway in self.link:
+            arrival = self.link[gateway]
+            if arrival in met:
+                break
+            met.append(arrival)
+            gateway = self.opposite(arrival)
+        return met
+
+    def breaks_path_axiom(self):
+        return any(g[0] == a[0] for g in self.link for a in self.ray(g))
+
+    def paths(self):
+        """Each path as the ordered list of (place, heading slot)."""
+        done, paths = set(), []
+        for gateway in self.gateways():
+            axis = frozenset((gateway, self.opposite(gateway)))
+            if axis in done:
+                continue
+            back = self.ray(gateway)
+            forth = [self.opposite(a) for a in self.ray(self.opposite(gateway))]
+            path = [*reversed(back), self.opposite(gateway), *forth]
+            done |= {frozenset((h, self.opposite(h))) for h in path}
+            paths.append(path)
+        return paths
+
+    def faces(self):
+        """Faces as lists of directed links, each written as the gateway it leaves by."""
+        faces, done = [], set()
+        for dart in self.link:
+            face = []
+            while dart not in done:
+                done.add(dart)
+                face.append(dart)
+                place, slot = self.link[dart]
+                while True:
+                    slot = (slot - 1) % self.slots
+                    if (place, slot) in self.link:
+                        break
+                dart = place, slot
+            if face:
+                faces.append(face)
+        return faces or [[]]
+
+    def euler(self):
+        return len(self.stars) - len(self.link) // 2 + len(self.faces())
+
+    def genus(self):
+        return (2 - self.euler()) // 2
+
+    def one_face(self, g, h):
+        """Whether two pending gateways lie on one face of the map."""
+
+        def corner(gateway):
+            place, slot = gateway
+            for _ in range(self.slots):
+                slot = (slot - 1) % self.slots
+                if (place, slot) in self.link:
+                    return place, slot
+            return None
+
+        if corner(g) is None or corner(h) is None:
+            return True
+        return any(corner(g) in face and corner(h) in face for face in self.faces())
+
+    def closed(self):
+        return not self.pending()
+
+    def travelled(self):
+        return all(len(path) > 1 for path in self.paths())
+
+    def perpendicular(self):
+        places = [{p for p, _ in path} for path in self.paths()]
+        if any(len(a & b) > 1 for a, b in combinations(places, 2)):
+            return False
+        for a, b, c in combinations(places, 3):
+            if a & b and b & c and a & c and len((a & b) | (b & c) | (a & c)) == 3:
+                return False
+        return True
+
+    def boundary(self):
+        half = self.slots // 2
+        for path in self.paths():
+            on, left, right = {p for p, _ in path}, set(), set()
+            for place, heading in path:
+                for turn in range(1, half):
+                    right |= {p for p, _ in self.ray((place, (heading + turn) % self.slots))}
+                    left |= {p for p, _ in self.ray((place, (heading - turn) % self.slots))}
+            if left & right or on & left or on & right:
+                return False
+        return True
+
+    def cost(self):
+        return len(self.paths()), len(self.stars)
+
+
+def marked(marker, at):
+    """Whether after the last step the marker is seen if it is where the agent is, and not
+    else: its whole story is told again."""
+    lies = None
+    for t, (place, _) in enumerate(at):
+        sees = (t, "saw") in marker or (t, "took") in marker
+        here = lies == place
+        ready = lies is not None
+        if (t, "took") in marker:
+            lies = None
+        if (t, "put") in marker:
+            lies = place
+    return not ready or sees == here
+
+
+def tree(experience, planar=False, bound=None):
+    """All hypotheses by step: a list of lists, one for each step from 0 (Figure 2)."""
+    slots, views, turns, landmarks, marker = experience
+    levels = [[((0, 0),)]]
+    for t in range(1, len(turns)):
+        level = []
+        for at in levels[-1]:
+            before = Hypothesis(experience, at)
+            place, gateway = at[-1]
+            x = place, (gateway + turns[t]) % slots
+
+            def fits(p, s, t=t):
+                turned = {(g - s) % slots for g in views[p]}
+                return turned == set(views[t]) and landmarks[p] == landmarks[t]
+
+            if x in before.link:
+                if fits(*before.link[x]) and marked(marker, (*at, before.link[x])):
+                    level.append((*at, before.link[x]))
+                continue
+            arrivals = [g for g in before.pending() if g != x and fits(*g)]
+            if planar:
+                arrivals = [g for g in arrivals if before.one_face(x, g)]
+            for arrival in [*arrivals, (t, 0)]:
+                child = (*at, arrival)
+                after = Hypothesis(experience, child)
+                if after.breaks_path_axiom() or not marked(marker, child):
+                    continue
+                if bound is not None and len(after.stars) > bound:
+                    continue
+                level.append(child)
+        levels.append(level)
+    return levels
+
+
+def best(experience, hypotheses, closed=True):
+    """The boundary-consistent ones with fewest paths, then fewest places."""
+    maps = [Hypothesis(experience, at) for at in hypotheses]
+    maps = [m for m in maps if m.boundary() and (m.closed() or not closed)]
+    least = min((m.cost() for m in maps), default=None)
+    return {m.at for m in maps if m.cost() == least}
+
+
+def certain(hypotheses):
+    """What is so in all of them: the pairs of steps at one place, and the steps at new places."""
+    steps = range(len(hypotheses[0]))
+    same = {
+        (t, u) for t, u in combinations(steps, 2) if all(h[t][0] == h[u][0] for h in hypotheses)
+    }
+    return same, {t for t in steps if all(h[t][0] == t for h in hypotheses)}

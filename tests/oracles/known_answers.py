@@ -1,0 +1,888 @@
+"""The queries that the encodings are tried with, each with its right answers: what
+make mutate runs on every mutant of an encoding.
+
+A suite is a function that yields queries; an encoding is tried with those of its form that
+load it.
+"""
+
+import random
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+from functools import cache, partial
+from itertools import combinations, product
+
+from conftest import ENCODINGS, PARTS, Truth
+from topomap.documents.check import STEP_RULES, by_definition, by_rules
+from topomap.model.experience import MARKER, Experience, explore
+from topomap.model.topology import TopologicalMap
+from topomap.questions.standings import Standing
+from topomap.solver.solving import FORMS
+from topomap.worlds.environment import EAST, WEST, grid, world
+from topomap.worlds.route import snake
+
+from oracles import phase_answers, walks
+from oracles.broken_rules import Assignment, assignments, reasons
+from oracles.brute_force import Hypothesis
+from oracles.maps_with_errors import DEMANDS, INSTANCES, by_hand, drawn
+from oracles.misreadings import brute, corrupted, expected
+from oracles.statements import FIGURES, PROPERTIES, RELATIONS, relation
+from oracles.worlds import WORLDS, of_grid, random_experience, walked
+
+
+def seen(*steps, slots=4):
+    """An experience from one text a step: "turn: gateways"."""
+    views = tuple(frozenset(map(int, step.split(":")[-1].split())) for step in steps)
+    turns = tuple(int(step.split(":")[0]) for step in steps[1:])
+    return Experience(slots, views, turns, (frozenset(),) * len(steps))
+
+
+def marked(experience, *steps):
+    """The same with a landmark recognised after these steps."""
+    marks = [frozenset("a" if step in steps else "") for step in range(experience.steps + 1)]
+    return replace(experience, landmarks=tuple(marks))
+
+
+CORRIDOR = seen("0", "0: 0 2", "2: 0", "0: 0 2")
+CORNERS = seen("0 1", "0: 0 1", "1: 0 3")
+FIRST, LAST = frozenset([0]), frozenset([2])
+EXPERIENCES = {
+    "corridor": CORRIDOR,
+    "same": marked(CORRIDOR, 1, 3),
+    "lost": marked(CORRIDOR, 1),
+    "added": marked(CORRIDOR, 3),
+    "branch": seen("0 1", "0: 0"),
+    "end": seen("0 2", "0: 0"),
+    "loop": seen("0 1", "0: 0 3"),
+    "corners": CORNERS,
+    "marker": replace(CORNERS, drops=FIRST, markers=LAST),
+    "no marker": replace(CORNERS, drops=FIRST),
+    "taken": replace(CORNERS, drops=FIRST, picks=LAST),
+    # No step arrives where it left.
+    "marker at once": replace(seen("0 1", "0: 0 3"), drops=FIRST, markers=frozenset([1])),
+    "mirrored": seen("0 1", "0: 0 1", "1: 0 1"),
+    "ahead": seen("0 1 2 3", "0: 0 2", "2: 0 1 2 3"),
+    "square": seen("0 3", "0: 0 3", "3: 0 3", "3: 0 3", "3: 0 1"),
+    "round": seen("0 3", "0: 0 3", "3: 0 3", "3: 0 3", "3: 0 1", "1: 0 3"),
+    "lasso": seen("0 1 2", "0: 0 1 2 3", "0: 0 1 2", "1: 0", "0: 0 1 3", "1: 0 1 2 3"),
+    "ears": seen("0 1 2 3", "0: 0 1", "1: 0 1", "1: 0 1 2 3", "1: 0 1", "1: 0 1", "1: 0 1 2 3"),
+    "triangle": seen("0 3", "0: 0 1", "1: 0 1", "1: 0 1"),
+    "twisted": seen("0 1", "0: 0 1", "1: 0 3", "3: 0 3"),
+    "stages": seen(
+        "0 1 3",
+        "3: 0 3",
+        "3: 0 2 3",
+        "3: 0",
+        "0: 0 1 3",
+        "3: 0 1",
+        "1: 0 2 3",
+        "2: 0 1",
+        "1: 0 2 3",
+    ),
+    "meeting": seen(
+        "0 2 3",
+        "0: 0 1",
+        "1: 0 1 2",
+        "0: 0 3",
+        "3: 0 2 3",
+        "2: 0 1",
+        "1: 0 2 3",
+        "2: 0 1",
+        "1: 0 2 3",
+        "3: 0",
+    ),
+    "turning off": seen(
+        "0 1 3",
+        "3: 0 3",
+        "3: 0 2 3",
+        "2: 0 1",
+        "1: 0 2 3",
+        "3: 0",
+        "0: 0 1 3",
+        "3: 0 1",
+        "1: 0 2 3",
+    ),
+    # Planarity goes by what lies beyond a gateway by which a place, which is new for sure, was
+    # first reached.
+    "beyond": seen(
+        "0",
+        "0: 0 1 2 4 6",
+        "6: 0 2",
+        "2: 0 1 2 4 6",
+        "6: 0 1 2 3",
+        "3: 0 1 3 5 7",
+        "5: 0 1 2 3",
+        "0: 0 2 3 4 6",
+        "4: 0 4",
+        "4: 0 2 4 5 6",
+        slots=8,
+    ),
+    # Two paths that meet twice: on no run of either; on two runs that an earlier one joins.
+    "lens": walked(4, "p1 x3 x1 q3 x2 c0 c3 y1 p2 y0 y2 q0", "p1", "1 2 3 2 3 2 3 0"),
+    "fork": walked(4, "p1 q3 p2 y0 y2 z0 z2 q0 z1 c3 c0 d2 d3 y1", "y2", "2 1 0 3 0 1 0"),
+    "star": seen("0 1 2", "0: 0", "0: 0 1 2", "1: 0", "0: 0 1 5", "1: 0", "0: 0 4 5", slots=6),
+}
+
+
+# The random ones: seed, most steps, and how many of them are after the horizon. The last two
+# were found by a search for experiences that kill a mutant which the others do not.
+DRAWN = [*((seed, 8, seed % 3) for seed in range(100)), (602, 14, 0), (2408, 12, 0)]
+
+
+# Walks whose runs meet at places of four gateways, most of them found by such a search.
+WALKS = [
+    # Runs that pass no such place are on one path with runs that do.
+    seen(
+        *("0 2", "0: 0", "0: 0 2", "2: 0 1 2 3", "2: 0 1", "1: 0 1", "1: 0 1", "1: 0 1 2 3"),
+        *("2: 0 2", "2: 0", "0: 0 2"),
+    ),
+    # Runs of one path pass as many such places as there are runs that do, and more.
+    of_grid(3, 4, "grid", (1, 0, 1), "EEWWNESSENN"),
+    marked(of_grid(3, 5, "grid", (1, 0, 1), "EEEWWWSENNESSENN"), 2, 4, 12),
+    of_grid(2, 3, "grid", (1, 2, 0), "WNSNWS"),
+    of_grid(4, 4, "grid", (2, 0, 2), "ESEWN"),
+    of_grid(3, 3, "grid", (2, 2, 3), "WWNNSENE"),
+    of_grid(4, 4, "grid", (3, 1, 3), "EENN"),
+    of_grid(3, 3, "cylinder", (2, 1, 1), "NENWWWWWWSSWW"),
+    of_grid(3, 3, "grid", (1, 2, 2), "NWWSSE"),
+    of_grid(3, 3, "cylinder", (1, 2, 1), "WSWWNNWWEE"),
+    of_grid(4, 4, "grid", (2, 1, 3), "ENWNEEWWWSSNN"),
+    of_grid(4, 4, "grid", (2, 1, 1), "WNSSEENW"),
+    of_grid(3, 3, "grid", (0, 1, 2), "SNWSE"),
+    of_grid(3, 3, "grid", (0, 1, 2), "SNWSEESWN"),
+]
+
+# Walks of four slots that kill mutants of lines.lp: made for it, and found by a search.
+RING = "w2 t0 t2 w0 t1 q3 q2 r0 r1 s3 s0 d2 d0 e2"
+TWO_GATES = "a1 p3 p1 t3 t1 f3 a2 e0 e1 z3 z0 p2 t2 x0"
+TWICE = "t1 m3 m1 n3 n1 u3 m0 k0 n0 l0"
+FORK = "g1 m3 m2 k0 k1 l3 l1 h3 h0 z2 z3 n1 n2 l0 n3 u1 u2 o0 o1 k3 m1 v3 g2 v2"
+SQUARES = [
+    # A circular path that could be taken for one that ends, as parts of the two look alike.
+    walked(4, RING, "w0", "2 1 3 2 0 1 2 1 0 2 0 0"),
+    walked(4, RING, "d2", "0 2 2 3 0 3 0 2 1 3 2"),
+    # A visit that could be of two places, each with a gateway which no other visit takes.
+    walked(4, TWO_GATES, "f3", "3 3 3 2 1 0"),
+    walked(4, TWO_GATES, "p2", "2 3 0 1 1 1"),
+    # Two paths that meet twice, one of them of runs that do not all touch; or both passed
+    # straight on at both places.
+    walked(4, TWICE + " t2 w0 w2 u2", "w2", "0 1 3 2 0 1 0 0 1 0 0 1 2 2 3"),
+    walked(4, TWICE + " t2 u2", "l0", "0 3 0 0 3 2 3 1 2 1"),
+    walked(4, TWICE + " t2 u2", "m1", "3 2 3 1 2 1 0 0 1 0"),
+    walked(4, "x1 t3 t1 u3 u1 y3 y2 c0 c3 d1 d0 u2 u0 t0 t2 w0", "x1", "1 1 1 2 3 0 0 2"),
+    # A triangle of paths, but of no three runs.
+    walked(4, "x1 m3 m1 z3 x2 y0 y1 z2 m0 k0", "m1", "3 2 1 3 0"),
+    # Two ways could begin at one gateway, and two more at another.
+    walked(4, FORK, "g2", "1 2 1 1 0 3 2 0 3 2 1 0 1"),
+    seen("0 2", "2: 0 3", "3: 0 3", "3: 0 2", "2: 0 3", "3: 0 3", "3: 0 2"),
+    seen("0", "0: 0 1 2 3", "3: 0", "0: 0 1 2 3", "3: 0", "0: 0 1 2 3", "3: 0 2", "2: 0"),
+    seen("0 2", "0: 0 1 2", "1: 0", "0: 0 1 3", "1: 0", "0: 0 2 3", "2: 0 2", "2: 0"),
+    marked(
+        seen(
+            "0 2 3",
+            "2: 0 2 3",
+            "2: 0 3",
+            "3: 0 3",
+            "3: 0 2 3",
+            "2: 0 2 3",
+            "2: 0 3",
+            "3: 0 3",
+            "3: 0 2 3",
+            "3: 0 1 3",
+            "1: 0 1 2",
+            "1: 0 1 3",
+        ),
+        0,
+        8,
+    ),
+    seen("0 2", "0: 0", "0: 0 2", "2: 0", "0: 0 2", "2: 0", "0: 0 2"),
+    seen(
+        "0 1 2 3",
+        "3: 0",
+        "0: 0 1 2 3",
+        "3: 0 1",
+        "1: 0",
+        "0: 0 3",
+        "3: 0 1 2 3",
+        "2: 0",
+        "0: 0 1 2 3",
+        "1: 0",
+    ),
+    seen("0 2", "0: 0 2", "0: 0 2", "2: 0", "0: 0 2", "2: 0 2", "2: 0", "0: 0 2", "2: 0 2"),
+    seen("0 1 2 3", "0: 0", "0: 0 1 2 3", "2: 0", "0: 0 1 2 3", "1: 0", "0: 0 1 2 3", "2: 0"),
+    seen("0 1 2 3", "2: 0", "0: 0 1 2 3", "1: 0", "0: 0 1 2 3", "2: 0", "0: 0 1 2 3", "3: 0"),
+    seen(
+        "0 1 2 3",
+        "2: 0 2",
+        "0: 0 1 2 3",
+        "1: 0",
+        "0: 0 1 2 3",
+        "2: 0",
+        "0: 0 1 2 3",
+        "3: 0",
+        "0: 0 1 2 3",
+        "2: 0 2",
+        "2: 0",
+    ),
+    seen(
+        "0 2 3",
+        "2: 0 3",
+        "3: 0 3",
+        "3: 0 2 3",
+        "2: 0 2 3",
+        "2: 0 3",
+        "3: 0 3",
+        "3: 0 2 3",
+        "2: 0 2 3",
+        "3: 0 1 3",
+        "3: 0 2 3",
+        "3: 0 1 3",
+    ),
+    seen("0 2", "2: 0 3", "3: 0 3", "3: 0 2", "0: 0 1", "0: 0 2", "2: 0 3", "3: 0 3", "3: 0 2"),
+    # What contradicts itself: the way back ends elsewhere.
+    seen("0", "0: 0 1", "1: 0", "0: 0"),
+]
+
+
+Answers = frozenset[tuple[tuple[int, ...], frozenset[str]]]
+
+
+@dataclass(frozen=True)
+class Query:
+    """Encodings, by their names under encodings/, loaded with what they include, with facts
+    and with arguments of clingo; and the answers, each its cost and the atoms that it shows.
+    With --opt-mode=optN, these are the optimal ones.
+
+    With ``steps``, they are grounded one after the other, each with its facts and the program
+    parts ``parts``, and then it is asked. A number among them takes that step back; what is
+    not of a step is only added."""
+
+    files: tuple[str, ...]
+    facts: str
+    answers: Answers
+    arguments: tuple[str, ...] = ()
+    steps: tuple[str, ...] = ()
+    parts: tuple[str, ...] = ()
+
+
+def shown(*atoms: str) -> Answers:
+    """The one answer that shows these atoms, and has no cost."""
+    return frozenset({((), frozenset(atoms))})
+
+
+def theory() -> Iterator[Query]:
+    """Experiences, with the answers that the independent search gives."""
+    for experience in (EXPERIENCES | WORLDS).values():
+        yield from hypotheses(experience.facts(), (), Truth(experience))
+    for seed, most, after in DRAWN:
+        experience = random_experience(random.Random(f"corpus {seed}"), most)
+        horizon = max(0, experience.steps - after)
+        cut = ("-c", f"horizon={horizon}")
+        yield from hypotheses(experience.facts(), cut, Truth(experience.cut(horizon)))
+
+
+def marker() -> Iterator[Query]:
+    """Experiences with a marker."""
+    for seed in range(30):
+        experience = random_experience(random.Random(f"marker {seed}"), 9, marker=True)
+        yield from hypotheses(experience.facts(), (), Truth(experience))
+    for name in ("marker", "no marker", "taken", "marker at once"):
+        for horizon in range(EXPERIENCES[name].steps + 1):
+            cut, how = EXPERIENCES[name].cut(horizon), ("-c", f"horizon={horizon}")
+            yield from hypotheses(EXPERIENCES[name].facts(), how, Truth(cut))
+
+
+def hypotheses(facts: str, arguments: tuple[str, ...], truth: Truth) -> Iterator[Query]:
+    """What is asked of one experience, of each form of the encodings: all hypotheses, those
+    of each part, what each costs, and the best."""
+
+    def atoms(at):
+        return frozenset(f"at({t},{p},{s})" for t, (p, s) in enumerate(at))
+
+    def query(parts, found, *more, cost=lambda h: ()):
+        answers = frozenset((cost(truth.final[at]), atoms(at)) for at in found)
+        for folder in FORMS.values():
+            under = folder.relative_to(ENCODINGS)
+            files = tuple(str(under / part) for part in ("topomap", *parts))
+            yield Query(files, facts, answers, (*arguments, *more))
+
+    def least(parts, cost, found):
+        return query(parts, truth.least(cost, found), "--opt-mode=optN", cost=cost)
+
+    def genus(h):
+        return (h.genus(),)
+
+    def fewest(h):
+        return h.cost()
+
+    def both(h):
+        return (h.genus(), *h.cost())
+
+    # The plain ones are also to say what euler/1 and genus/1 are.
+    figures = "#show euler/1. #show genus/1."
+    answers = frozenset(
+        ((), atoms(at) | {f"euler({h.euler()})", f"genus({h.genus()})"})
+        for at, h in truth.final.items()
+    )
+    ignore = (*arguments, "--opt-mode=ignore")
+    yield Query(("topomap", "genus"), facts + figures, answers, ignore)
+
+    yield from query((), truth.final)
+    for part in PARTS:
+        yield from query((part,), truth.having(part))
+    yield from query(("bound",), truth.having(bound=3), "-c", "places=3")
+    yield from query(("genus", "minimal"), truth.final, "--opt-mode=enum,99", cost=both)
+    yield from least(("minimal",), fewest, truth.final)
+    yield from least(("boundary", "minimal"), fewest, truth.having("boundary"))
+    yield from least(("genus",), genus, truth.final)
+    yield from least(("genus", "minimal"), both, truth.final)
+
+
+def misread() -> Iterator[Query]:
+    """Experiences with wrong views, with what brute force says of them."""
+    drawn = [(corrupted(random.Random(f"misread {seed}"), 3), 1) for seed in range(16)]
+    drawn += [(corrupted(random.Random(f"misread {seed}"), 2), 2) for seed in range(2)]
+    named = [(EXPERIENCES[name], 1) for name in ("same", "lost", "added")]
+    named.append((seen("1", "0: 0", "0: 0"), 1))  # and where it stood at first
+    nothing = Experience(4, (frozenset(),), (), (frozenset(),))
+    for experience, most in [*drawn, *named, (CORNERS, 0), (nothing, 1)]:
+        ways = list(brute(experience, most))
+        for parts in ((), ("closed",), ("minimal",), ("genus", "minimal")):
+            every = {
+                cost: [key for key, other in found.items() if other == cost]
+                for found in [expected(ways, parts)]
+                for cost in found.values()
+            }
+            said = {cost: {wrong_atoms(*key) for key in keys} for cost, keys in every.items()}
+            files = ("topomap", "noise", *parts)
+            answers = frozenset((cost, atoms) for cost in said for atoms in said[cost])
+            how = () if most == 1 else ("-c", f"noise={most}")
+            yield Query(files, experience.facts(), answers, (*how, "--opt-mode=enum,999"))
+            best = min(said, default=())
+            answers = frozenset((best, atoms) for atoms in said.get(best, ()))
+            yield Query(files, experience.facts(), answers, (*how, "--opt-mode=optN"))
+        if ways and len(ways[0][1].final) < 20 and most == 1:
+            yield figures(experience, ways)
+
+
+def figures(seen: Experience, ways) -> Query:
+    """How many places, links, paths and pending gateways there are where views are wrong."""
+    terms = {figure: NAMED.get(figure, figure) for figure in FIGURES if figure != "genus"}
+    facts = seen.facts() + " ".join(f"ask(number({term},0..20))." for term in terms.values())
+    answers = set()
+    for (at, wrong), cost in expected(ways, ()).items():
+        map_ = dict(ways)[wrong].final[at]
+        told = {f"holds(number({terms[one]},{FIGURES[one](map_)}))" for one in terms}
+        answers.add((cost, wrong_atoms(at, wrong) | told))
+    arguments = ("--opt-mode=enum,999",)
+    return Query(("topomap", "noise", "query"), facts, frozenset(answers), arguments)
+
+
+def wrong_atoms(at, misread) -> frozenset[str]:
+    """What is shown of a hypothesis with misreadings."""
+    atoms = {f"at({t},{p},{s})" for t, (p, s) in enumerate(at)}
+    atoms |= {f"wrong({t})" for t, _ in misread}
+    kinds = ((t, "gateway" if isinstance(what, int) else "landmark", what) for t, what in misread)
+    return frozenset(atoms | {f"misread({t},{kind}({what}))" for t, kind, what in kinds})
+
+
+def given_up() -> Iterator[Query]:
+    """All dstates by step, with what they break; and those that break least."""
+    names = "corners", "mirrored", "ahead", "branch", "loop", "lost", "added"
+    for name, parts in [*((name, ()) for name in names), ("corners", ("closed",))]:
+        experience = EXPERIENCES[name].cut(3)
+        pending = product(range(experience.steps + 1), range(experience.slots))
+        every = [*reasons(experience), *(f"closed({p},{s})" for p, s in pending if parts)]
+        found = []
+        for at in assignments(experience):
+            one = Assignment(experience, at)
+            broken = [f"waived({reason})" for reason in every if one.broken(reason)]
+            atoms = frozenset([*broken, *(f"at({t},{p},{s})" for t, (p, s) in enumerate(at))])
+            found.append((len(broken), atoms))
+        whatever = frozenset(((), atoms) for _, atoms in found)
+        least = min(number for number, _ in found)
+        best = frozenset(((number,), atoms) for number, atoms in found if number == least)
+        files = ("topomap", "explain", *parts)
+        yield Query(files, experience.facts(), whatever, ("--opt-mode=ignore",))
+        yield Query(files, experience.facts(), best, ("--opt-mode=optN",))
+
+
+def phases() -> Iterator[Query]:
+    """The programs of the phases: which visits can be of one place; which runs can lie on one
+    path or cross; the closed and perpendicular maps; and the hypotheses that are left by what
+    was found."""
+    experiences = [*(EXPERIENCES | WORLDS).values()]
+    experiences += WALKS
+    experiences += [random_experience(random.Random(f"corpus {seed}"), 8) for seed in range(60)]
+    for experience in experiences:
+        facts = experience.facts()
+        draw = random.Random(facts)
+        pairs = phase_answers.Pairs(experience)
+        yield Query(("fast/phases/visits",), facts, shown(*pairs.shown()))
+        facts += "".join(f"{atom}. " for atom in pairs.shown())
+        truth = Truth(experience)
+        yield left(facts, experience, truth, [])
+        yield left(facts, experience, truth, [], "boundary")
+        yield begun(facts, experience, pairs, draw.randint(0, experience.steps))
+        founds = [[]]
+        if truth.final:
+            at = draw.choice(sorted(truth.final))
+            few, many, every = (
+                phase_answers.drawn(draw, experience, at, rate) for rate in (0.1, 0.4, 1)
+            )
+            # Which visits are new, so that the order of the gateways is known too.
+            news = [fact for fact in every if fact[0] in ("new", "old")]
+            founds += [few, many, news]
+            yield left(facts, experience, truth, few, "planar")
+            yield left(facts, experience, truth, many, "closed", "perpendicular")
+            yield left(facts, experience, truth, news, "planar")
+        for found in founds * (experience.slots == 4):
+            yield lines(facts, experience, truth, found)
+            if (ways := phase_answers.runs(experience, found)) is not None:
+                answers = frozenset(((), way) for way in ways)
+                file = ("fast/phases/runs",)
+                yield Query(file, facts + phase_answers.text(found), answers, ("--project",))
+
+
+def lines(facts: str, experience: Experience, truth: Truth, found: list) -> Query:
+    """What is asked of closed and perpendicular maps where something was found."""
+    of_pairs = [fact for fact in found if fact[0] in ("new", "never", "apart")]
+    squares = truth.having("closed", "perpendicular")
+    maps = [at for at in squares if phase_answers.so(of_pairs, experience, at)]
+    facts += phase_answers.text(found)
+    return Query(
+        ("fast/phases/lines",), facts, phase_answers.lines(experience, maps), ("--project",)
+    )
+
+
+def squares() -> Iterator[Query]:
+    """More of that."""
+    for experience in SQUARES:
+        facts = experience.facts()
+        facts += "".join(f"{atom}. " for atom in phase_answers.Pairs(experience).shown())
+        yield lines(facts, experience, Truth(experience), [])
+
+
+def left(facts: str, experience: Experience, truth: Truth, found: list, *parts: str) -> Query:
+    """What is asked where something was found: the hypotheses in which it is so."""
+    answers = frozenset(
+        ((), frozenset(f"at({t},{p},{s})" for t, (p, s) in enumerate(at)))
+        for at in truth.having(*parts)
+        if phase_answers.so(found, experience, at)
+    )
+    files = tuple(f"fast/{name}" for name in ("phases/topomap", *parts))
+    return Query(files, facts + phase_answers.text(found), answers)
+
+
+def ends() -> Iterator[Query]:
+    """As many gateways as ends of links: that is to say, the closed maps."""
+    files = "fast/phases/topomap", "fast/phases/ends"
+    draws = [random_experience(random.Random(f"ends {seed}"), 8) for seed in range(20)]
+    for experience in [*(EXPERIENCES | WORLDS).values(), *draws]:
+        truth = Truth(experience)
+        facts = experience.facts()
+        facts += "".join(f"{atom}. " for atom in phase_answers.Pairs(experience).shown())
+        asked = left(facts, experience, truth, [], "closed")
+        yield replace(asked, files=files, arguments=("--eq=0",))
+
+
+def begun(facts: str, experience: Experience, pairs: phase_answers.Pairs, horizon: int) -> Query:
+    """What is asked of a beginning: its hypotheses, but for those which take visits to be of
+    one place that the whole tells apart."""
+    answers = frozenset(
+        ((), frozenset(f"at({t},{p},{s})" for t, (p, s) in enumerate(at)))
+        for at in Truth(experience.cut(horizon)).final
+        if pairs.may.issuperset(phase_answers.same(at, experience.slots))
+    )
+    return Query(("fast/phases/topomap",), facts, answers, ("-c", f"horizon={horizon}"))
+
+
+def sizes() -> list[Query]:
+    """What the size of the fast encodings is taken by: each experience with all the parts, one
+    in five of what is asked of the phases, one in seven of what is asked step by step, and a
+    large exploration of which it is known what visits are new."""
+    files = tuple(
+        f"fast/{part}" for part in ("topomap", "bound", "query", *PARTS, "genus", "minimal")
+    )
+    whole = [Query(files, seen.facts(), frozenset()) for seen in (EXPERIENCES | WORLDS).values()]
+    phases = [query for query in queries() if query.files[0].startswith("fast/phases/")]
+    made = grid(5, 5)
+    route = [EAST, WEST] * 2 + snake(made)
+    experience, truth = explore(made.map, ((0, 0), EAST), route)
+    found = phase_answers.drawn(random.Random(0), experience, truth, 1)
+    known = phase_answers.text(fact for fact in found if fact[0] in ("new", "old"))
+    pairs = "".join(f"{atom}. " for atom in phase_answers.Pairs(experience).shown())
+    large = experience.facts() + pairs + known
+    plane = Query(("fast/phases/topomap", "fast/planar"), large, frozenset())
+    return [*whole, *phases[::5], plane, *[*following()][::7]]
+
+
+def check() -> Iterator[Query]:
+    """Maps, sound and with errors, with the violations that are there by definition. What a
+    broken step does to the map as a whole is not defined, so a map with one is asked only
+    where both checkers say the same."""
+    for experience, at in [*by_hand(), *drawn(120)]:
+        for demands in (DEMANDS, ()):
+            violations = by_definition(experience, at, demands)
+            broken = STEP_RULES & dict(violations).keys()
+            if broken and by_rules(experience, at, demands) != violations:
+                continue
+            facts = [f"at({step},{place},{slot})." for step, place, slot in at]
+            facts += [f"demand({demand})." for demand in demands]
+            found = shown(*(f"violation({rule},{step})" for rule, step in violations))
+            yield Query(("check",), experience.facts() + "".join(facts), found)
+
+
+def demands() -> Iterator[Query]:
+    """Demands that are known, and others; and no map, or nothing at all."""
+    nowhere = "violation(exactly_one,0)"
+    yield Query(("check",), "", shown(nowhere))
+    yield Query(("check",), "slots(4). demand(plan).", shown(nowhere, "violation(plan,0)"))
+    facts = "slots(4). view(0,0). view(1,0). turn(1,0). at(0,0,0). at(1,1,0). "
+    sound = ("planar", "closed", "travelled", "boundary", "perpendicular")
+    for demand in (*sound, "bound(2)", "bound(2147483647)"):
+        yield Query(("check",), f"{facts} demand({demand}).", shown())
+    for demand in ("plannar", "bound", "bound(a)", "bound(#inf)", '"closed"', "2"):
+        yield Query(("check",), f"{facts} demand({demand}).", shown(f"violation({demand},1)"))
+
+
+def faults() -> Iterator[Query]:
+    """Instances with faults."""
+    for facts, errors in INSTANCES.items():
+        yield Query(("input",), facts, shown(*(f"error({error})" for error in errors.split())))
+
+
+COMPARED = {"number": int.__eq__, "least": int.__ge__, "most": int.__le__}
+NAMED = {"places": "place", "paths": "path", "links": "link"}
+
+
+def asked() -> Iterator[Query]:
+    """Statements, and of each hypothesis those that hold in it."""
+    draws = [random_experience(random.Random(f"asked {seed}"), 9) for seed in range(60)]
+    for experience in [*(EXPERIENCES | WORLDS).values(), *draws]:
+        truth = Truth(experience)
+        draw = random.Random(experience.facts())
+        for _ in range(3 if len(truth.final) < 100 else 0):
+            yield from _asked(draw, experience, truth)
+    yield from statements(CORRIDOR, Truth(CORRIDOR), {})
+
+
+def _asked(draw: random.Random, experience: Experience, truth: Truth) -> Iterator[Query]:
+    """Some statements."""
+    tests = {}
+    for kind in draw.choices([*RELATIONS], k=8):
+        numbers = relation(draw, experience, kind)
+        tests[f"{kind}({','.join(map(str, numbers))})"] = partial(_so, RELATIONS[kind], numbers)
+    for figure in draw.sample([*FIGURES], 2):
+        for how in draw.choices([*COMPARED], k=3):
+            number = draw.randint(0, experience.steps + 2)
+            term = f"{how}({NAMED.get(figure, figure)},{number})"
+            tests[term] = partial(_compared, FIGURES[figure], COMPARED[how], number)
+    for name in draw.sample([*PROPERTIES], 1):
+        tests[name] = PROPERTIES[name]
+    yield from statements(experience, truth, tests)
+    yield from statements(experience, truth, {"boundary": PROPERTIES["boundary"]})
+
+
+def statements(
+    experience: Experience, truth: Truth, tests: dict[str, Callable[[Hypothesis], bool]]
+) -> Iterator[Query]:
+    """Statements, each with what it says of a hypothesis, asked of each form of the encodings."""
+    answers = set()
+    for at, h in truth.final.items():
+        atoms = {f"at({t},{p},{s})" for t, (p, s) in enumerate(at)}
+        atoms |= {f"holds({term})" for term, test in tests.items() if test(h)}
+        answers.add(((), frozenset(atoms)))
+    facts = experience.facts() + "".join(f"ask({term})." for term in tests)
+    for folder in FORMS.values():
+        under = folder.relative_to(ENCODINGS)
+        yield Query((str(under / "topomap"), str(under / "query")), facts, frozenset(answers))
+
+
+def _so(test: Callable[..., bool], numbers: list[int], h: Hypothesis) -> bool:
+    return test(h, *numbers)
+
+
+def _compared(
+    figure: Callable[[Hypothesis], int], compare: Callable[..., bool], number: int, h: Hypothesis
+) -> bool:
+    return compare(figure(h), number)
+
+
+def further() -> Iterator[Query]:
+    """Where to go next, and why not: maps of one world, and hypotheses of one experience."""
+    for seed in range(200):
+        draw = random.Random(f"further {seed}")
+        n = draw.choice([1, 2, 3, 4])
+        carried = n in (2, 3) and draw.random() < 0.5
+        if seed % 4:
+            _, among = walks.scattered(draw, 3)
+            out = draw.random() < 0.3
+            among = [numbered(draw, one, out and draw.random() < 0.7) for one in among]
+            facts = bare(among)
+        else:
+            experience, found = signed(draw) if seed % 8 else walks.drawn(draw, 3, 6)
+            facts = experience.facts()
+            for number, at in enumerate(found):
+                facts += "".join(f"map({number},{t},{p},{s}). " for t, (p, s) in enumerate(at))
+            among = [walks.standing(experience, at) for at in found]
+        yield from planned(facts, among, n, carried, draw.choice([1, 2]))
+        for pairs in (None, [(0, 1)])[: len(among)]:
+            yield proved(facts, among, carried and seed % 4 > 0, pairs)
+    for draw, among in rings():
+        carried = draw.random() < 0.8
+        yield from planned(bare(among), among, draw.randint(1, 4), carried, 1)
+        yield proved(bare(among), among, carried, None)
+    yield from planned(bare(among), among, None, False, 1)
+    among = [crossings(ways) for ways in TWO_MARKERS]
+    yield from planned(bare(among), among, 3, True, 1)
+    ends = {(0, 1): (1, 3), (1, 3): (0, 1)}
+    less = Standing(world(4, ends), (0, 1))
+    more = Standing(world(4, ends | {(1, 1): (2, 3), (2, 3): (1, 1)}), (0, 1))
+    for among in ([less, more], [more, less]):
+        yield from planned(bare(among), among, 1, False, 1)
+        yield proved(bare(among), among, False, None)
+
+
+# Two markers would tell these three by three steps, and one does not.
+TWO_MARKERS = (
+    {(0, 1): (0, 2), (0, 3): (0, 0)},
+    {(0, 1): (1, 0), (1, 1): (2, 0), (2, 1): (2, 2)},
+    {(0, 1): (1, 0), (1, 1): (2, 0), (2, 1): (3, 0)},
+)
+
+
+def crossings(ways: dict) -> Standing:
+    """A map of places with four gateways each."""
+    links = ways | {there: here for here, there in ways.items()}
+    stars = {place: frozenset(range(4)) for place, _ in links}
+    return Standing(TopologicalMap(4, stars, links), (0, 0))
+
+
+def signed(draw: random.Random) -> tuple[Experience, list]:
+    """Hypotheses of an experience with landmarks."""
+    while True:
+        experience, found = walks.drawn(draw, 3, 8)
+        if any(experience.landmarks) and len(found) > 1:
+            return experience, found
+
+
+def rings() -> Iterator[tuple[random.Random, list[Standing]]]:
+    """Maps that look alike, but for what a marker tells, or a sign: rings of some places, of
+    which each may have a dead end beside it."""
+    for seed in range(60):
+        draw = random.Random(f"rings {seed}")
+        ends = draw.random() < 0.5
+        among = []
+        for size in draw.sample(range(1, 5), draw.choice([2, 2, 3])):
+            links = {(place, 1): ((place + 1) % size, 3) for place in range(size)}
+            if ends:
+                links |= {(place, 0): (size + place, 2) for place in range(size)}
+            made = world(4, links | {there: here for here, there in links.items()})
+            start = (size, 2) if ends else (0, 1)
+            if seed % 5 == 1 and ends and size > 1:  # the first place has no dead end
+                kept = {a: b for a, b in links.items() if a != (size - 1, 0)}
+                made = world(4, kept | {there: here for here, there in kept.items()})
+            if seed % 5 == 0:
+                others = [place for place in made.stars if place != start[0]]
+                made = replace(made, landmarks={place: {"a"} for place in others[-1:]})
+            among.append(Standing(made, start))
+        yield draw, among
+
+
+def numbered(draw: random.Random, one: Standing, out: bool) -> Standing:
+    """The same with numbers for places; if the marker is out, it lies where it is not seen."""
+    number = {place: count for count, place in enumerate(one.world.stars)}
+    stars = {number[place]: star for place, star in one.world.stars.items()}
+    links = {(number[p], s): (number[q], x) for (p, s), (q, x) in one.world.links.items()}
+    signs = {number[place]: terms for place, terms in one.world.landmarks.items()}
+    world = replace(one.world, stars=stars, links=links, landmarks=signs)
+    dstate = number[one.dstate[0]], one.dstate[1]
+    elsewhere = [place for place in stars if place != dstate[0]]
+    return Standing(world, dstate, draw.choice(elsewhere) if out and elsewhere else None)
+
+
+def bare(among: list[Standing]) -> str:
+    """The maps as facts of their own."""
+    facts = f"slots({among[0].world.slots}). "
+    for number, one in enumerate(among):
+        for place, slot in one.world.gateways():
+            facts += f"gateway({number},{place},{slot}). "
+        for (place, slot), (other, at) in one.world.links.items():
+            facts += f"link({number},{place},{slot},{other},{at}). "
+        for place, terms in one.world.landmarks.items():
+            facts += "".join(f"sign({number},{place},{term}). " for term in terms)
+        facts += "stands({},{},{}). ".format(number, *one.dstate)
+        facts += f"lies({number},{one.marker}). " if one.marker is not None else ""
+    return facts
+
+
+def planned(
+    facts: str, among: list[Standing], n: int | None, carried: bool, most: int
+) -> Iterator[Query]:
+    """The best walks of at most n steps (6 without a number), where a map stands for up to
+    ``most`` maps."""
+    weights = [1 + number % most for number in range(len(among))]
+    options = ("--opt-mode=optN",) if n is None else ("--opt-mode=optN", "-c", f"n={n}")
+    n = 6 if n is None else n
+    facts += "carried. " * carried
+    carried = carried and all(one.marker is None for one in among)
+    out_of: list = []
+    tells: list = []
+    for walk, drop, pairs, out in walks.every(among, n, carried):
+        left = max(
+            sum(w for j, w in enumerate(weights) if (min(i, j), max(i, j)) not in pairs)
+            for i in range(len(among))
+        )
+        missed = sum(w for j, w in enumerate(weights) if j not in out)
+        rest = [len(walk), *[int(drop is not None)] * carried, *walk, *[0] * (n - len(walk))]
+        rest += [drop or 0] * carried
+        tells.append((left, *rest, walk, drop))
+        out_of.append((missed, *rest, walk, drop))
+    for file, costs in (("explore", tells), ("unseen", out_of)):
+        *cost, walk, drop = min(costs, key=lambda one: one[:-2])
+        atoms = [f"go({step},{turn})" for step, turn in enumerate(walk, 1)]
+        atoms += [f"drop({drop})"] if drop is not None else []
+        sizes = "".join(f"size({i},{w}). " for i, w in enumerate(weights) if w > 1)
+        yield Query((file,), facts + sizes, frozenset({(tuple(cost), frozenset(atoms))}), options)
+
+
+def proved(facts: str, among: list[Standing], carried: bool, pairs: list | None) -> Query:
+    """Which maps no walk tells apart, with the proof."""
+    facts += "carried. " * carried
+    carried = carried and all(one.marker is None for one in among)
+    atoms = []
+    for i, j in pairs or combinations(range(len(among)), 2):
+        one, other = among[i], among[j]
+        reached, alike = walks.related(one, other, carried)
+        if not alike:
+            continue
+        ends = set()
+        for (place, slot), (image, at), lies in reached:
+            where = ",".join("nowhere" if place is None else str(place) for place in lies)
+            atoms.append(f"related({i},{j},({place},{slot}),({image},{at}),({where}))")
+            ends |= {(1, place), (2, image)}
+        opened = [
+            f"open({i},{j},{side},{place},{slot})"
+            for side, world in ((1, one.world), (2, other.world))
+            for place, slot in world.pending()
+            if (side, place) in ends
+        ]
+        atoms += [*opened, f"{'alike' if opened else 'bisimilar'}({i},{j})"]
+    facts += "".join(f"ask({i},{j}). " for i, j in pairs or ())
+    return Query(("bisimilar",), facts, shown(*atoms))
+
+
+# The marker is put down, taken up at the same place, and not seen there any more.
+TAKEN_BACK = replace(seen("0", "0: 0", "0: 0", "0: 0", "0: 0"), drops=FIRST, picks=LAST)
+
+
+def following() -> Iterator[Query]:
+    """Experiences step by step: all hypotheses, the planar ones, those of few places, what
+    they cost, the best closed ones, and which visits are of one place. Steps that lead
+    elsewhere are taken back."""
+    draws = [random_experience(random.Random(f"following {seed}"), 9) for seed in range(40)]
+    draws += [random_experience(random.Random(f"marked {seed}"), 9, True) for seed in range(24)]
+    draws += [TAKEN_BACK, TAKEN_BACK]
+    for number, experience in enumerate([*(EXPERIENCES | WORLDS).values(), *draws]):
+        truth = Truth(experience)
+        head, *lines = experience.facts().splitlines()
+        names, steps = list(range(len(lines))), tuple(lines)
+        if number % 2:
+            names, steps = astray(random.Random(f"astray {number}"), experience)
+
+        def atoms(at, names=names):
+            return frozenset(f"at({names[t]},{names[p]},{s})" for t, (p, s) in enumerate(at))
+
+        def asked(
+            found, *more, parts=(), arguments=(), facts=head, steps=steps, all=("--project",)
+        ):
+            return Query(
+                ("online", *more), facts, frozenset(found), (*all, *arguments), steps,
+                ("step", *parts),
+            )  # fmt: skip
+
+        every, ignore = truth.final, ("--opt-mode=ignore",)
+        yield asked([((), atoms(at)) for at in every], arguments=ignore)
+        bound, parts = ((None, ("planar",)), (3, ("bound",)), (4, ("bound", "planar")))[number % 3]
+        found = [
+            ((), atoms(at))
+            for at in truth.having(*parts[-1:] * (parts[-1] == "planar"), bound=bound)
+        ]
+        few = () if bound is None else ("-c", f"places={bound}")
+        yield asked(found, parts=parts, arguments=(*ignore, *few))
+        costs = {at: h.cost() for at, h in every.items()}
+        if number % 3 == 0:
+            fewest = truth.least(lambda h: h.cost(), every)
+            found = [(costs[at], atoms(at)) for at in fewest]
+            yield asked(found, arguments=("--opt-mode=optN",))
+        elif number % 3 == 1:
+            fewest = truth.least(lambda h: h.cost(), truth.having("closed"))
+            found = [(costs[at], atoms(at)) for at in fewest]
+            ends = (*steps, f":- not closed({names[-1]}).")
+            yield asked(found, arguments=("--opt-mode=optN",), steps=ends)
+        else:
+            told = [atoms(at) | together(experience.slots, at, names) for at in every]
+            yield asked([((), one) for one in told], "online/certain", arguments=ignore)
+            for mode, join in ("cautious", frozenset.intersection), ("brave", frozenset.union):
+                found = [((), join(*told))] if told else []
+                how = (*ignore, f"--enum-mode={mode}")
+                yield asked(found, "online/certain", arguments=how)
+
+
+def astray(draw, experience):
+    """The same experience with steps that lead elsewhere and are taken back: the numbers of
+    its own steps, and all the steps."""
+    names, steps, last = [], [], -1
+    for step in range(experience.steps + 1):
+        if step and draw.random() < 0.4:
+            turn = draw.choice(sorted(experience.views[step - 1]))
+            last += 1
+            told = "".join(f" {name}({last})." for name in MARKER if draw.random() < 0.3)
+            steps.append(f"turn({last},{turn}). after({last},{names[-1]}). view({last},0).{told}")
+            steps.append(str(last))
+        last += 1
+        facts = [f"view({last},{slot})." for slot in sorted(experience.views[step])]
+        facts += [f"landmark({last},{term})." for term in sorted(experience.landmarks[step])]
+        told = experience.drops, experience.picks, experience.markers
+        facts += [f"{n}({last})." for n, of in zip(MARKER, told, strict=True) if step in of]
+        if step:
+            facts.append(f"turn({last},{experience.turns[step - 1]}).")
+            facts += [f"after({last},{names[-1]})."] * (last - 1 != names[-1])
+        names.append(last)
+        steps.append(" ".join(facts))
+    return names, tuple(steps)
+
+
+def together(slots, at, names):
+    """What certain.lp shows of a hypothesis."""
+    found = {f"new({names[t]})" for t, (p, _) in enumerate(at) if p == t}
+    for u, (q, there) in enumerate(at):
+        for t, (p, here) in enumerate(at[:u]):
+            if p == q:
+                pair = f"{names[t]},{names[u]}"
+                found |= {f"one({pair})", f"same({pair},{(there - here) % slots})"}
+    return frozenset(found)
+
+
+SUITES = (
+    theory,
+    marker,
+    given_up,
+    misread,
+    phases,
+    squares,
+    ends,
+    check,
+    demands,
+    faults,
+    asked,
+    further,
+    following,
+)
+
+
+@cache
+def queries() -> list[Query]:
+    """All of them, mixed, as that kills a mutant soon."""
+    every = [query for suite in SUITES for query in suite()]
+    return random.Random("queries").sample(every, len(every))

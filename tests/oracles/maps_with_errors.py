@@ -1,0 +1,190 @@
+"""Maps and instances with errors, and what is wrong with each."""
+
+import random
+from collections.abc import Iterator
+
+from topomap.model.experience import MARKER, Experience, parse
+from topomap.model.query import Query
+from topomap.search import traversal
+
+from oracles.worlds import random_experience
+
+At = list[tuple[int, int, int]]
+DEMANDS = ("planar", "bound(3)", "closed", "travelled", "boundary", "perpendicular")
+CORRIDOR = ("0", "0: 0 2", "2: 0", "0: 0 2")
+SQUARE = ("0 3", "0: 0 3", "3: 0 3", "3: 0 3", "3: 0 1")
+LASSO = ("0 1 2", "0: 0 1 2 3", "0: 0 1 2", "1: 0", "0: 0 1 3", "1: 0 1 2 3")
+TRIANGLE = ("0 3", "0: 0 1", "1: 0 1", "1: 0 1")
+EARS = ("0 1 2 3", "0: 0 1", "1: 0 1", "1: 0 1 2 3", "1: 0 1", "1: 0 1", "1: 0 1 2 3")
+TWISTED = ("0 1", "0: 0 1", "1: 0 3", "3: 0 3")
+# The link in the midst of a street is its newest.
+GROWING = ("0 1 2", "2: 0 1 a", "0: 0 2 3", "2: 0 3", "3: 0 2 3", "2: 0 3 a")
+CORNERS = ("0 1", "0: 0 1", "1: 0 3")
+TAKEN = ("0 drop", "0: 0 2", "0: 0 pick", "0: 0 2", "0: 0")
+MOVED = ("0 drop", "0: 0 2", "0: 0 pick drop", "0: 0 2", "0: 0 marker")
+# The rule, what is seen ("turn: gateways", landmarks, what is done with the marker), a sound map
+# and a map that breaks it, as a place and a gateway after each step, and the step at which it
+# does.
+MAPS = [
+    ("exactly_one", CORRIDOR, "0.0 1.0 2.0 1.2", "0.0 1.0 - 1.2", 2),
+    ("exactly_one", CORRIDOR, "0.0 1.0 2.0 1.2", "0.0 1.0 2.0 1.2 0.0", 4),
+    ("exactly_one", CORRIDOR, "0.0 1.0 2.0 1.2", "0.0 1.0 2.0 1.2 0.3", 4),
+    ("exactly_one", CORRIDOR, "0.0 1.0 2.0 1.2", "0.0 1.0/0.0 2.0 1.2", 1),
+    ("naming", CORRIDOR, "0.0 1.0 2.0 1.2", "0.0 2.0 2.0 2.0", 1),
+    ("naming", ("0 2", "2: 0 2"), "0.0 1.0", "0.2 1.0", 0),
+    ("gateway", CORNERS, "0.0 1.0 0.1", "0.0 1.0 0.2", 2),
+    ("view", ("0 1", "0: 0 1", "1: 0 1 3"), "0.0 1.0 2.0", "0.0 1.0 0.1", 2),
+    ("view", ("0 1 3", "0: 0 1", "1: 0 1"), "0.0 1.0 2.0", "0.0 1.0 0.3", 2),
+    ("landmark", ("0 a", "0: 0 2 a", "2: 0", "0: 0 2 a"), "0.0 1.0 2.0 1.2", "0.0 1.0 0.0 1.2", 2),
+    ("landmark", ("0", "0: 0 2", "2: 0", "0: 0 2 a"), "0.0 1.0 2.0", "0.0 1.0 2.0 1.2", 3),
+    ("landmark", ("0", "0: 0 2 a", "2: 0", "0: 0 2"), "0.0 1.0 2.0", "0.0 1.0 2.0 1.2", 3),
+    ("marker", ("0 drop", "0: 0 2", "0: 0 marker"), "0.0 1.0 0.0", "0.0 1.0 2.0", 2),
+    ("marker", ("0 drop", "0: 0 2", "2: 0"), "0.0 1.0 2.0", "0.0 1.0 0.0", 2),
+    ("marker", ("0 drop", "0: 0 2", "0: 0 pick"), "0.0 1.0 0.0", "0.0 1.0 2.0", 2),
+    ("marker", TAKEN, "0.0 1.0 0.0 1.0 0.0", "0.0 1.0 2.0 1.0 4.0", 2),
+    ("marker", MOVED, "0.0 1.0 0.0 1.0 0.0", "0.0 1.0 0.0 1.0 4.0", 4),
+    ("schema", CORRIDOR, "0.0 1.0 2.0 1.2", "0.0 1.0 2.0 3.0", 3),
+    ("schema", ("0 1", "0: 0 1"), "0.0 1.0", "0.0 0.0", 1),
+    ("path_twice", LASSO, "0.0 1.0 0.0 3.0 0.1 5.0", "0.0 1.0 0.0 3.0 0.1 1.1", 5),
+    ("path_twice", ("0 1", "0: 0 3"), "0.0 1.0", "0.0 0.1", 1),
+    ("path_circular", LASSO, "0.0 1.0 0.0 3.0 0.1 5.0", "0.0 1.0 0.0 3.0 0.1 1.2", 5),
+    ("planar", EARS, "0.0 1.0 2.0 0.2 4.0 5.0 6.0", "0.0 1.0 2.0 0.2 4.0 5.0 0.1", 6),
+    ("bound(3)", SQUARE, "0.0 1.0 2.0", "0.0 1.0 2.0 3.0 0.3", 3),
+    ("closed", SQUARE, "0.0 1.0 2.0 3.0 0.3", "0.0 1.0 2.0 3.0 4.0", 4),
+    ("travelled", SQUARE, "0.0 1.0 2.0 3.0 0.3", "0.0 1.0 2.0 3.0", 3),
+    ("travelled", ("0 2", "0: 0"), "0.0 1.0", "0.0", 0),
+    ("boundary", CORNERS, "0.0 1.0 2.0", "0.0 1.0 0.1", 2),
+    ("boundary", TWISTED, "0.0 1.0 2.0", "0.0 1.0 2.0 0.1", 3),
+    ("perpendicular", CORNERS, "0.0 1.0 2.0", "0.0 1.0 0.1", 2),
+    ("perpendicular", TRIANGLE, "0.0 1.0 2.0 3.0", "0.0 1.0 2.0 0.3", 3),
+    ("perpendicular", GROWING, "0.0 1.0 0.2 3.0 4.0 5.0", "0.0 1.0 0.2 3.0 4.0 1.1", 5),
+]
+
+
+def of_texts(steps: tuple[str, ...]) -> Experience:
+    """The experience of such texts."""
+    facts = ["slots(4)."]
+    for step, text in enumerate(steps):
+        turn, _, view = text.rpartition(":")
+        facts += [f"turn({step},{turn})."] if step else []
+        for word in view.split():
+            name = "view" if word.isdigit() else "landmark"
+            facts.append(f"{word}({step})." if word in MARKER else f"{name}({step},{word}).")
+    return parse(" ".join(facts), "test")
+
+
+def placed(text: str) -> At:
+    """A map of such a text."""
+    return [
+        (step, *map(int, dstate.split(".")))
+        for step, dstates in enumerate(text.split())
+        for dstate in dstates.split("/")
+        if dstate != "-"
+    ]
+
+
+def with_errors(draw: random.Random, experience: Experience, at: At) -> At:
+    """The same with an error or two."""
+    wrong = list(at)
+    for _ in range(draw.choice((1, 1, 2))):
+        step = draw.randrange(len(wrong))
+        kind = draw.choice(("gone", "two", "place", "slot", "cut", "more"))
+        if kind == "gone" and len(wrong) > 1:
+            del wrong[step]
+        elif kind == "two":
+            wrong.append((wrong[step][0], draw.randrange(experience.steps + 1), 0))
+        elif kind == "place":
+            place = draw.randrange(-1, experience.steps + 2)
+            wrong[step] = wrong[step][0], place, wrong[step][2]
+        elif kind == "slot":
+            slot = draw.randrange(-1, experience.slots + 1)
+            wrong[step] = *wrong[step][:2], slot
+        elif kind == "cut":
+            del wrong[step + 1 :]
+        else:
+            wrong.append((draw.randrange(-2, experience.steps + 4), 0, 0))
+    return wrong
+
+
+def mapped(draw: random.Random, steps: int, marker: bool = False) -> tuple[Experience, At]:
+    """A random experience, and a sound map of it with few paths; with a marker, the real one may
+    be none."""
+    experience = random_experience(draw, steps, marker)
+    for node in traversal.best_first(traversal.root(experience, Query())):
+        if node.steps == experience.steps:
+            return experience, [(step, *dstate) for step, dstate in enumerate(node.dstates)]
+    assert marker
+    return mapped(draw, steps, marker)
+
+
+def by_hand() -> Iterator[tuple[Experience, At]]:
+    """The maps above."""
+    for _, steps, sound, broken, _ in MAPS:
+        yield of_texts(steps), placed(sound)
+        yield of_texts(steps), placed(broken)
+
+
+def drawn(number: int) -> Iterator[tuple[Experience, At]]:
+    """Random maps, sound and with errors."""
+    for seed in range(number):
+        draw = random.Random(f"flawed {seed}")
+        experience, at = mapped(draw, 10, marker=seed % 3 == 2)
+        yield experience, at
+        for _ in range(3):
+            yield experience, with_errors(draw, experience, at)
+
+
+# Facts, and the errors that input.lp shows.
+INSTANCES = {
+    "slots(4). view(0,0).": "",
+    "slots(4). view(0,0). view(0,3). turn(1,3). view(1,0). landmark(1,a).": "",
+    "": "-1,no_slots 0,no_view",
+    "slots(4;6). view(0,0).": "-1,two_slots",
+    "slots(a). view(0,0).": "-1,no_number(a)",
+    "slots(#inf). view(0,0).": "-1,no_number(#inf)",
+    "slots(5). view(0,0).": "-1,odd_slots(5)",
+    "slots(1). view(0,0).": "-1,odd_slots(1) -1,few_slots(1)",
+    "slots(2). view(0,0).": "",
+    "slots(1000000). view(0,0).": "",
+    "slots(1000001). view(0,0).": "-1,odd_slots(1000001) -1,many_slots(1000001)",
+    "slots(2147483647). view(0,0).": "-1,odd_slots(2147483647) -1,many_slots(2147483647)",
+    "slots(4). view(0,0). view(a,1).": "-1,no_step(a)",
+    "view(0,0). view(0,2147483647).": "-1,no_slots",
+    "slots(0). view(0,0).": "-1,few_slots(0) 0,slot(0)",
+    "slots(1000002). view(0,0).": "-1,many_slots(1000002)",
+    "slots(4). view(0,0). view(-1,0).": "-1,no_step(-1)",
+    "slots(4). view(0,0). landmark(#inf,a).": "-1,no_step(#inf)",
+    "slots(4). view(0,0). turn(a,0).": "-1,no_step(a)",
+    "slots(4). view(0,0). turn(2,0). turn(4,0). view(2,0). view(4,0).": "1,no_turn 3,no_turn",
+    "slots(4). view(0,0). view(1,0).": "1,no_step",
+    "slots(4). view(0,0). turn(0,0).": "0,turn_at_start",
+    "slots(4). view(0,0). view(0,1). turn(1,0). turn(1,1). view(1,0).": "1,two_turns",
+    "slots(4). view(0,0). turn(1,0).": "1,no_view",
+    "slots(4). turn(1,0). view(1,0).": "0,no_view",
+    "slots(4). view(0,1).": "0,no_slot_0",
+    "slots(4). view(0,0). view(0,4). view(0,-1).": "0,slot(4) 0,slot(-1)",
+    "slots(4). view(0,0). turn(1,4). view(1,0).": "1,slot(4) 1,no_gateway(4)",
+    "view(0,0). view(0,a).": "-1,no_slots 0,slot(a)",
+    "slots(4). view(0,0). turn(1,3). view(1,0).": "1,no_gateway(3)",
+    "slots(4). view(0,0). drop(0). turn(1,0). view(1,0). drop(1).": "1,put_down",
+    "slots(4). view(0,0). drop(0). turn(1,0). view(1,0). pick(1). drop(1).": "",
+    "slots(4). view(0,0). drop(0). marker(0). turn(1,0). view(1,0). marker(1). pick(1).": "",
+    "slots(4). view(0,0). drop(0). turn(1,0). view(1,0). turn(2,0). view(2,0). drop(2).": (
+        "2,put_down"
+    ),
+    "slots(4). view(0,0). drop(0). turn(1,0). view(1,0). pick(1). turn(2,0). view(2,0). drop(2).": (
+        ""
+    ),
+    "slots(4). view(0,0). pick(0).": "0,taken_up",
+    "slots(4). view(0,0). drop(-1). marker(0).": "-1,no_step(-1) 0,no_marker",
+    "slots(4). view(0,0). pick(0). drop(0).": "0,taken_up",
+    "slots(4). view(0,0). marker(0).": "0,no_marker",
+    "slots(4). view(0..2,0). turn(1..2,0). drop(0). pick(1). marker(2).": "2,no_marker",
+    "slots(4). view(0,0). drop(a). pick((1,2)). marker(-1).": (
+        "-1,no_step(a) -1,no_step((1,2)) -1,no_step(-1)"
+    ),
+    "slots(4). view(0,0). drop(1). pick(2). marker(3).": "1,no_step 2,no_step 3,no_step",
+    "slots(2000000000). turn(2147483647,0).": (
+        "-1,many_slots(2000000000) 0,no_view 1,no_turn 2147483647,no_view"
+    ),
+}

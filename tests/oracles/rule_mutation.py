@@ -1,0 +1,502 @@
+"""Rule mutation: every encoding, changed in one place at a time, must give a wrong answer
+to some query of tests/oracles/known_answers.py, but for the mutants that
+tests/oracles/equivalent.toml proves to be equivalent. ``make mutate`` tries them all and writes
+docs/mutation.md.
+
+Exit status: 0 so it is; 1 a mutant survives that is not listed, or one is listed that does
+not survive or does not exist; 2 bad input or usage; 130 interrupted.
+"""
+
+import argparse
+import hashlib
+import os
+import platform
+import random
+import re
+import resource
+import signal
+import sys
+import tomllib
+from collections import Counter
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from itertools import groupby, product
+from pathlib import Path
+from typing import Any
+
+import clingo
+from clingo import ast
+from conftest import ENCODINGS, ROOT
+from topomap.runtime.errors import InputError
+from topomap.runtime.files import output
+from topomap.runtime.limits import LARGEST
+from tqdm import tqdm
+
+from oracles.known_answers import Query, queries, sizes
+
+LISTED = ROOT / "tests/oracles/equivalent.toml"
+REPORT = ROOT / "docs/mutation.md"
+KINDS = ("remove", "drop", "negate", "shift")
+FATES = ("survived", "killed", "refused", "endless", "larger")
+SECONDS = 5  # of the processor, for one query: the encodings take milliseconds
+BYTES = 2 << 30
+HEAD = """# Rule mutation
+
+Written by `make mutate`, with clingo {clingo} and Python {python}.
+
+A mutant is an encoding changed in one place: a statement removed; a literal of a body or of a
+condition dropped; one negated, or a comparison turned into its complement; a number made one
+greater or one less. Mutants that read the same are one. Each is asked the queries of
+`tests/oracles/known_answers.py` that load it, whose answers are known without the encodings: those
+in `fast/` the ones that load `fast/topomap.lp`, the others those that do not. It is *killed*
+when one gives other answers (other models, shown atoms or costs, or a model twice), *refused*
+when clingo has an error or a message for it, *endless* when a query takes more than {seconds}
+seconds of the processor or {memory} MiB of memory. (If the encoding without the change gives
+other answers too, the run ends with an error.) When all answers are right, a mutant of
+`fast/` or `online/`, whose worth is in its size, is *larger* if it grounds to more rules, over
+all named experiences with all the parts and some of what `fast/phases/` is asked. Another one is
+*equivalent* if `tests/oracles/equivalent.toml` says why, and has *survived* if not. Comments,
+`#include` and `#heuristic`, which is but an order of the search, are not mutated.
+"""
+COMPLEMENT = {
+    ast.ComparisonOperator.Equal: ast.ComparisonOperator.NotEqual,
+    ast.ComparisonOperator.LessThan: ast.ComparisonOperator.GreaterEqual,
+    ast.ComparisonOperator.GreaterThan: ast.ComparisonOperator.LessEqual,
+}
+COMPLEMENT |= {other: one for one, other in COMPLEMENT.items()}
+
+
+INCLUDE = re.compile(r'^#include "(.+)\.lp"\.', re.MULTILINE)
+FAST = "fast/"
+LEAN = "fast/", "online/"  # what is there for its size too
+
+Trials = Callable[[list["Mutant"]], Iterator[tuple["Mutant", str]]]
+Key = tuple[str, str, str]  # the file, the rule and the change of a mutant
+Programs = dict[tuple[str, ...], str]  # by the files of a query
+
+
+@dataclass(frozen=True)
+class Mutant:
+    """An encoding in which one statement reads ``text``; known by file, rule and change."""
+
+    file: str
+    rule: str
+    change: str
+    kind: str
+    number: int
+    text: str
+
+    @property
+    def key(self) -> Key:
+        return self.file, self.rule, self.change
+
+    def __str__(self) -> str:
+        return " | ".join(self.key)
+
+
+def named_files(folder: Path) -> list[str]:
+    """The encodings under a folder, the fast ones last."""
+    names = (str(path.relative_to(folder))[:-3] for path in folder.rglob("*.lp"))
+    return sorted(names, key=lambda file: (file.startswith(FAST), file))
+
+
+def statements(folder: Path, file: str) -> list[ast.AST]:
+    """The statements of an encoding, without its includes and comments. Where it is of a
+    program part, that is said first."""
+    lines = (folder / f"{file}.lp").read_text(encoding="utf-8").splitlines()
+    text = "\n".join(line for line in lines if not line.startswith("#include"))
+    found: list[ast.AST] = []
+    ast.parse_string(text, found.append)
+    return [
+        statement
+        for statement in found
+        if statement.ast_type != ast.ASTType.Comment and str(statement) != "#program base."
+    ]
+
+
+def closure(folder: Path, files: tuple[str, ...]) -> tuple[str, ...]:
+    """These encodings and all that they include."""
+    found: list[str] = []
+    waiting = [*files]
+    while waiting:
+        if (file := waiting.pop()) not in found:
+            found.append(file)
+            text = (folder / f"{file}.lp").read_text(encoding="utf-8")
+            names = (Path(file).parent / name for name in INCLUDE.findall(text))
+            waiting += [os.path.normpath(name) for name in names]
+    return tuple(found)
+
+
+def sets(folder: Path, asked: list[Query]) -> dict[tuple[str, ...], tuple[str, ...]]:
+    """What is loaded by each set of files that a query names."""
+    return {files: closure(folder, files) for files in dict.fromkeys(q.files for q in asked)}
+
+
+def tries(files: tuple[str, ...], loaded: tuple[str, ...], file: str) -> bool:
+    """Whether queries of these files are for trying this one: they load it, and are of its
+    form."""
+    return file in loaded and file.startswith(FAST) == files[0].startswith(FAST)
+
+
+def mutants(folder: Path, file: str) -> list[Mutant]:
+    """The mutants of an encoding; of those that read the same, one."""
+    found = {}
+    for number, statement in enumerate(statements(folder, file)):
+        if statement.ast_type in (ast.ASTType.Heuristic, ast.ASTType.Program):
+            continue
+        rule = str(statement)
+        found[number, ""] = Mutant(file, rule, "remove", "remove", number, "")
+        for kind, change, node in changes(statement):
+            text = str(node)
+            if text != rule:
+                found.setdefault((number, text), Mutant(file, rule, change, kind, number, text))
+    return list(found.values())
+
+
+def changes(node: ast.AST, body: bool = False) -> Iterator[tuple[str, str, ast.AST]]:
+    """What one change makes of a node: its kind, its text, and the changed node. ``body``
+    tells whether the node is part of a body or of a condition."""
+    if node.ast_type == ast.ASTType.Literal and body:
+        yield "negate", "", negated(node)
+    if node.ast_type == ast.ASTType.SymbolicTerm and node.symbol.type == clingo.SymbolType.Number:
+        for other in (node.symbol.number + 1, node.symbol.number - 1):
+            if abs(other) <= LARGEST:
+                yield "shift", "", node.update(symbol=clingo.Number(other))
+    for key in node.child_keys:
+        child = getattr(node, key)
+        literals = key in ("body", "condition")
+        if child is None:
+            continue
+        if isinstance(child, ast.AST):
+            for kind, change, new in changes(child, body):
+                yield kind, change or named(key, child, new), node.update(**{key: new})
+            continue
+        for place, item in enumerate(child):
+            before, after = list(child[:place]), list(child[place + 1 :])
+            if literals:
+                yield "drop", f"drop {item}", node.update(**{key: before + after})
+            for kind, change, new in changes(item, body or literals):
+                change = change or named(key, item, new)
+                yield kind, change, node.update(**{key: [*before, new, *after]})
+
+
+def named(key: str, old: ast.AST, new: ast.AST) -> str:
+    """The text of a change, once it is one of a literal, a head, or a part of one that has
+    no other name; until then none."""
+    if key in ("weight", "priority"):
+        return f"{key} {old} -> {new}"
+    if old.ast_type == ast.ASTType.Literal or key in ("head", "left_guard", "right_guard"):
+        return f"{str(old).strip()} -> {str(new).strip()}"
+    return ""
+
+
+def negated(literal: ast.AST) -> ast.AST:
+    """``not a`` of ``a``, and the other way about; of a comparison its complement."""
+    atom = literal.atom
+    if atom.ast_type == ast.ASTType.Comparison and len(atom.guards) == 1:
+        guard = atom.guards[0]
+        opposite = COMPLEMENT[ast.ComparisonOperator(guard.comparison)]
+        return literal.update(atom=atom.update(guards=[guard.update(comparison=opposite)]))
+    sign = ast.Sign.Negation if literal.sign == ast.Sign.NoSign else ast.Sign.NoSign
+    return literal.update(sign=sign)
+
+
+def tried(program: str, query: Query) -> str:
+    """The fate of a program at a query: refused if clingo has a message or an error."""
+    messages: list[str] = []
+    arguments = ["0", *query.arguments]
+    control = clingo.Control(arguments, logger=lambda _, text: messages.append(text))
+    try:
+        control.add("base", [], program)
+        control.add("base", [], query.facts)
+        control.ground([("base", [])])
+        for number, step in enumerate(query.steps):
+            go(control, number, step, query.parts)
+    except RuntimeError:
+        return "refused"
+    if messages:
+        return "refused"
+    optimal = "--opt-mode=optN" in query.arguments
+    together = any(argument.startswith("--enum-mode=") for argument in query.arguments)
+    found = []
+
+    def read(model: clingo.Model) -> bool:
+        if optimal and not model.optimality_proven:
+            return True
+        if together:  # each model comes nearer to what holds in all, or in some; the last is it
+            found.clear()
+        found.append((tuple(model.cost), frozenset(map(str, model.symbols(shown=True)))))
+        if together:
+            return True
+        return found[-1] in query.answers and len(found) <= len(query.answers)
+
+    control.solve(on_model=read)
+    right = len(found) == len(query.answers) and set(found) == query.answers
+    return "survived" if right else "killed"
+
+
+def go(control: clingo.Control, number: int, step: str, parts: tuple[str, ...]) -> None:
+    """Ground the facts of a step and what belongs to it; or take a step back."""
+    if step.isdigit():
+        control.release_external(clingo.Function("active", [clingo.Number(int(step))]))
+        return
+    control.add(f"facts{number}", [], step)
+    visits = re.findall(r"view\((\d+),", step)
+    mine = [(part, [clingo.Number(int(visits[0]))]) for part in parts if visits]
+    control.ground([(f"facts{number}", []), *mine])
+
+
+def rules(program: str, query: Query) -> int:
+    """How many rules a program grounds to."""
+    control = clingo.Control(["1", "--opt-mode=ignore"])
+    control.add("base", [], program)
+    control.add("base", [], query.facts)
+    control.ground([("base", [])])
+    for number, step in enumerate(query.steps):
+        go(control, number, step, query.parts)
+    control.solve()
+    return int(control.statistics["problem"]["lp"]["rules"])
+
+
+def suffer(programs: Programs, whole: Programs, asked: list[Query]) -> str:
+    """The fate of a mutant at the first query that it does not survive; none if the programs
+    without it do not survive that either. A query that takes too long ends the process."""
+    resource.setrlimit(resource.RLIMIT_AS, (BYTES, BYTES))
+    for query in asked:
+        signal.setitimer(signal.ITIMER_PROF, SECONDS)
+        try:
+            fate = tried(programs[query.files], query)
+        except MemoryError:
+            return "endless"
+        if fate != "survived":
+            signal.setitimer(signal.ITIMER_PROF, SECONDS)
+            return fate if tried(whole[query.files], query) == "survived" else ""
+    return "survived"
+
+
+def fates(
+    folder: Path, chosen: list[Mutant], asked: list[Query], measured: list[Query], jobs: int
+) -> Iterator[tuple[Mutant, str]]:
+    """The fate of each mutant, as they come, each in a process of its own."""
+    loaded = sets(folder, asked + measured)
+    names = set().union(*loaded.values())
+    texts = {file: list(map(str, statements(folder, file))) for file in names}
+
+    def program(files: tuple[str, ...]) -> str:
+        return "\n".join(text for name in loaded[files] for text in texts[name])
+
+    whole = {files: program(files) for files in loaded}
+    lean = any(mutant.file.startswith(LEAN) for mutant in chosen)
+    least = [(query, rules(whole[query.files], query)) for query in measured if lean]
+    waiting = list(reversed(chosen))
+    running: dict[int, Mutant] = {}
+    try:
+        while waiting or running:
+            while waiting and len(running) < jobs:
+                mutant = waiting.pop()
+                if child := os.fork():
+                    running[child] = mutant
+                    continue
+                code = len(FATES)
+                try:
+                    texts[mutant.file][mutant.number] = mutant.text
+                    mutated = {
+                        files: program(files)
+                        for files, every in loaded.items()
+                        if tries(files, every, mutant.file)
+                    }
+                    mine = [query for query in asked if query.files in mutated]
+                    fate = suffer(mutated, whole, mine)
+                    if fate == "survived" and mutant.file.startswith(LEAN):
+                        signal.setitimer(signal.ITIMER_PROF, SECONDS * len(measured))
+                        more = sum(
+                            rules(mutated[query.files], query) - number
+                            for query, number in least
+                            if query.files in mutated
+                        )
+                        fate = "larger" if more > 0 else fate
+                    code = FATES.index(fate) if fate else len(FATES) + 1
+                finally:
+                    os._exit(code)
+            child, status = os.wait()
+            mutant, code = running.pop(child), os.waitstatus_to_exitcode(status)
+            if code > len(FATES):
+                raise InputError(f"{mutant.file}: a query has a wrong answer without a change")
+            if code == len(FATES):
+                raise RuntimeError(f"could not try {mutant}")
+            yield mutant, FATES[code] if code >= 0 else "endless"
+    finally:
+        for child in running:
+            os.kill(child, signal.SIGKILL)
+            os.waitpid(child, 0)
+
+
+def marks(
+    folder: Path, chosen: list[Mutant], asked: list[Query], measured: list[Query]
+) -> dict[Mutant, str]:
+    """For each mutant, what tells it, and all that it is tried with, from any other."""
+    loaded = sets(folder, asked + measured)
+    of_file: dict[str, Any] = {}
+    for file in {mutant.file for mutant in chosen}:
+        told = []  # in any order, as queries of other files are mixed with these
+        for files, every in loaded.items():
+            if tries(files, every, file):
+                texts = [list(map(str, statements(folder, name))) for name in every]
+                told.append(repr((files, texts)))
+        for query in asked + measured * file.startswith(LEAN):
+            if tries(query.files, loaded[query.files], file):
+                answers = sorted((cost, sorted(atoms)) for cost, atoms in query.answers)
+                asked_for = query.files, query.facts, query.arguments, query.steps, query.parts
+                told.append(repr((*asked_for, answers)))
+        settled = clingo.__version__, SECONDS, BYTES
+        of_file[file] = hashlib.sha256(repr((settled, sorted(told))).encode())
+    found = {}
+    for mutant in chosen:
+        digest = of_file[mutant.file].copy()
+        digest.update(repr((mutant.file, mutant.number, mutant.text)).encode())
+        found[mutant] = digest.hexdigest()
+    return found
+
+
+def going_on(path: Path, mark: dict[Mutant, str], tried: Trials) -> Iterator[tuple[Mutant, str]]:
+    """The fates that a file knows already, then those of the others, which are added to it."""
+    known = dict(line.split() for line in path.read_text().splitlines()) if path.exists() else {}
+    yield from ((mutant, known[mark[mutant]]) for mutant in mark if mark[mutant] in known)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    with path.open("a") as file:
+        for mutant, fate in tried([mutant for mutant in mark if mark[mutant] not in known]):
+            file.write(f"{mark[mutant]} {fate}\n")
+            file.flush()
+            yield mutant, fate
+
+
+def listed(path: Path) -> dict[Key, str]:
+    """The mutants that a file lists as equivalent, each with the reason: of an entry, every
+    change of every rule in every file that it names."""
+
+    def several(value: str | list[str]) -> list[str]:
+        return [value] if isinstance(value, str) else value
+
+    try:
+        found = {}
+        for entry in tomllib.loads(path.read_text(encoding="utf-8"))["equivalent"]:
+            named = several(entry["file"]), several(entry["rule"]), entry["changes"]
+            for key in product(*named):
+                found[key] = entry["reason"].strip()
+    except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
+        raise InputError(f"{path}: {error!r}") from None
+    return found
+
+
+def report(fate: dict[Mutant, str], reasons: dict[Key, str]) -> str:
+    """The text of docs/mutation.md."""
+
+    def row(name: str, group: list[Mutant]) -> str:
+        kinds = Counter(mutant.kind for mutant in group)
+        ends = Counter(fate[mutant] for mutant in group)
+        proved = sum(fate[mutant] == "survived" and mutant.key in reasons for mutant in group)
+        ends["survived"] -= proved
+        numbers = [*(kinds[kind] for kind in KINDS), len(group), *(ends[end] for end in FATES)]
+        return f"| {name} | {' | '.join(map(str, [*numbers, proved]))} |"
+
+    rows = [row(f"`{file}.lp`", list(group)) for file, group in groupby(fate, lambda m: m.file)]
+    for name, fast in ("all but `fast/`", False), ("all of `fast/`", True):
+        rows.append(row(name, [mutant for mutant in fate if mutant.file.startswith(FAST) == fast]))
+    lines = [
+        HEAD.format(
+            clingo=clingo.__version__,
+            python=platform.python_version(),
+            seconds=SECONDS,
+            memory=BYTES >> 20,
+        ),
+        f"| encoding | {' | '.join((*KINDS, 'all', *FATES, 'equivalent'))} |",
+        "|---|" + "--:|" * (len(KINDS) + len(FATES) + 2),
+        *(*rows, row("all", list(fate))),
+        "\n## Mutants that give no wrong answer\n",
+    ]
+    survivors = [mutant for mutant in fate if fate[mutant] == "survived"]
+    for (file, rule), group in groupby(survivors, lambda mutant: (mutant.file, mutant.rule)):
+        lines.append(f"`{file}.lp`: `{rule}`\n")
+        for reason, same in groupby(group, lambda m: reasons.get(m.key, "**Not listed.**")):
+            changed = "; ".join(f"`{mutant.change}`" for mutant in same)
+            lines.append(f"- {changed}: {reason}")
+        lines.append("")
+    return "\n".join(lines).rstrip() + "\n"
+
+
+def count(text: str) -> int:
+    """A number from 1, of the command line."""
+    if not text.isdecimal() or int(text) < 1:
+        raise argparse.ArgumentTypeError(f"{text!r} is not a number from 1")
+    return int(text)
+
+
+def faults(fate: dict[Mutant, str], reasons: dict[Key, str], known: set[Key]) -> Iterator[str]:
+    """What is wrong with the fates, or with the list of the equivalent mutants."""
+    for mutant, end in fate.items():
+        if end == "survived" and mutant.key not in reasons:
+            yield f"survives, not listed: {mutant}"
+        if end != "survived" and mutant.key in reasons:
+            yield f"listed, but {end}: {mutant}"
+    for key in reasons:
+        if key not in known:
+            yield f"listed, but no mutant: {' | '.join(key)}"
+
+
+def main(
+    argv: list[str] | None = None,
+    folder: Path = ENCODINGS,
+    asked: Callable[[], list[Query]] = queries,
+    measured: Callable[[], list[Query]] = sizes,
+) -> int:
+    parser = argparse.ArgumentParser(description="Try the mutants of the encodings.")
+    parser.add_argument("-j", "--jobs", type=count, default=1, help="processes")
+    parser.add_argument("--sample", type=count, help="try only so many, none listed; no report")
+    parser.add_argument("--seed", default="0", help="of the sample")
+    parser.add_argument("--listed", type=Path, default=LISTED, help="the equivalent mutants")
+    parser.add_argument("--report", type=Path, default=REPORT, help="the file to write")
+    parser.add_argument("--known", type=Path, help="a file that keeps what was tried, to go on")
+    parser.add_argument("files", nargs="*", help="try only these, as theory/links; no report")
+    options = parser.parse_args(argv)
+    names = named_files(folder)
+    try:
+        if unknown := set(options.files) - set(names):
+            raise InputError(f"{', '.join(sorted(unknown))}: no such encoding")
+        reasons = listed(options.listed)
+        everyone = [mutant for file in names for mutant in mutants(folder, file)]
+        loaded = sets(folder, asked()).items()
+        for file in dict.fromkeys(mutant.file for mutant in everyone):
+            if not any(tries(files, every, file) for files, every in loaded):
+                raise InputError(f"{file}: no query in tests/oracles/known_answers.py loads it")
+        chosen = [mutant for mutant in everyone if mutant.file in (options.files or names)]
+        if options.sample:
+            chosen = [mutant for mutant in chosen if mutant.key not in reasons]
+            chosen = random.Random(options.seed).sample(chosen, min(options.sample, len(chosen)))
+
+        def tried(left: list[Mutant]) -> Iterator[tuple[Mutant, str]]:
+            return fates(folder, left, asked(), measured(), options.jobs)
+
+        trials = tried(chosen)
+        if options.known:
+            mark = marks(folder, chosen, asked(), measured())
+            trials = going_on(options.known, mark, tried)
+        ends = dict(tqdm(trials, "mutants", len(chosen), disable=None))
+        fate = {mutant: ends[mutant] for mutant in chosen}
+        if not (options.files or options.sample):
+            with output(str(options.report)) as text:
+                text.write(report(fate, reasons))
+    except InputError as error:
+        print(f"mutate: {error}", file=sys.stderr)
+        return 2
+    except KeyboardInterrupt:
+        return 130
+    numbers = Counter(fate.values())
+    print(f"{len(fate)} mutants:", ", ".join(f"{numbers[end]} {end}" for end in FATES))
+    wrong = list(faults(fate, reasons, {mutant.key for mutant in everyone}))
+    for fault in wrong:
+        print(fault)
+    return 1 if wrong else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,67 @@
+"""Statements about hypotheses, and whether they hold, by the independent search's own means."""
+
+from oracles.brute_force import Hypothesis
+
+
+def gateway(h, step, slot):
+    """The gateway so many slots clockwise of where the agent stood after a step."""
+    place, stood_at = h.at[step]
+    return place, (stood_at + slot) % h.slots
+
+
+def one_path(h, one, other):
+    """Whether two gateways are there, and one path leads through both."""
+
+    def lies(path, place, slot):
+        axis = slot % (h.slots // 2)
+        return any((p, heading % (h.slots // 2)) == (place, axis) for p, heading in path)
+
+    there = all(slot in h.stars[place] for place, slot in (one, other))
+    return there and any(lies(path, *one) and lies(path, *other) for path in h.paths())
+
+
+RELATIONS = {
+    "same": lambda h, t, u: h.at[t][0] == h.at[u][0],
+    "linked": lambda h, t, s, u, r: h.link.get(gateway(h, t, s)) == gateway(h, u, r),
+    "path": lambda h, t, s, u, r: one_path(h, gateway(h, t, s), gateway(h, u, r)),
+    "pending": lambda h, t, s: gateway(h, t, s) in h.pending(),
+    "at": lambda h, t, p, s: h.at[t] == (p, s),
+}
+FIGURES = {
+    "places": lambda h: len(h.stars),
+    "paths": lambda h: len(h.paths()),
+    "links": lambda h: len(h.link) // 2,
+    "pending": lambda h: len(h.pending()),
+    "genus": Hypothesis.genus,
+}
+PROPERTIES = {
+    "planar": lambda h: h.genus() == 0,
+    "closed": Hypothesis.closed,
+    "travelled": Hypothesis.travelled,
+    "boundary": Hypothesis.boundary,
+    "perpendicular": Hypothesis.perpendicular,
+}
+
+
+def ends(draw, experience):
+    """Gateways, each as a step and a slot: the two ends of what a step took, or other ones."""
+    last = experience.steps
+    step = max(draw.randint(0, last), draw.randint(0, last))
+    taken = [(step - 1, experience.turns[step - 1]), (step, 0)] if step else []
+    if draw.random() < 0.1:
+        slot = draw.choice(sorted(experience.views[step]))
+        taken = [(step, slot), (step, (slot + experience.slots // 2) % experience.slots)]
+    draw.shuffle(taken)
+    while len(taken) < 2 or draw.random() < 0.3:
+        step = max(draw.randint(0, last), draw.randint(0, last))
+        seen = draw.random() < 0.9
+        slot = draw.choice(sorted(experience.views[step]) if seen else range(experience.slots))
+        taken[draw.randint(0, 1) :] = [(step, slot)]
+    return taken
+
+
+def relation(draw, experience, kind):
+    """The arguments of a statement of this kind."""
+    (t, s), (u, r) = ends(draw, experience)
+    short = {"same": [t, u], "pending": [t, s], "at": [max(t, u), min(t, u), s]}
+    return short.get(kind, [t, s, u, r])

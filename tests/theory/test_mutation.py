@@ -1,0 +1,292 @@
+"""Rule mutation: which mutants are made, what makes ``make mutate`` fail, and samples of it."""
+
+import os
+import subprocess
+import sys
+
+import pytest
+from conftest import ENCODINGS, ROOT
+from oracles import rule_mutation as mutate
+from oracles.known_answers import (
+    Query,
+    check,
+    demands,
+    ends,
+    faults,
+    following,
+    phases,
+    queries,
+    shown,
+    sizes,
+    squares,
+    theory,
+)
+
+RULES = """
+p(X) :- q(X,1), not r(X).
+:- p(X), X > 1, not q(X,Y) : r(Y).
+{ s(X) : q(X,_) } = 2.
+#minimize { 3@1,X : s(X) }.
+"""
+MUTANTS = {
+    "p(X) :- q(X,1); not r(X).": {
+        "remove": "",
+        "drop q(X,1)": "p(X) :- not r(X).",
+        "q(X,1) -> not q(X,1)": "p(X) :- not q(X,1); not r(X).",
+        "q(X,1) -> q(X,2)": "p(X) :- q(X,2); not r(X).",
+        "q(X,1) -> q(X,0)": "p(X) :- q(X,0); not r(X).",
+        "drop not r(X)": "p(X) :- q(X,1).",
+        "not r(X) -> r(X)": "p(X) :- q(X,1); r(X).",
+    },
+    "#false :- p(X); X > 1; not q(X,Y): r(Y).": {
+        "remove": "",
+        "drop p(X)": "#false :- X > 1; not q(X,Y): r(Y).",
+        "p(X) -> not p(X)": "#false :- not p(X); X > 1; not q(X,Y): r(Y).",
+        "drop X > 1": "#false :- p(X); not q(X,Y): r(Y).",
+        "X > 1 -> X <= 1": "#false :- p(X); X <= 1; not q(X,Y): r(Y).",
+        "X > 1 -> X > 2": "#false :- p(X); X > 2; not q(X,Y): r(Y).",
+        "X > 1 -> X > 0": "#false :- p(X); X > 0; not q(X,Y): r(Y).",
+        "drop not q(X,Y): r(Y)": "#false :- p(X); X > 1.",
+        "not q(X,Y) -> q(X,Y)": "#false :- p(X); X > 1; q(X,Y): r(Y).",
+        "drop r(Y)": "#false :- p(X); X > 1; not q(X,Y).",
+        "r(Y) -> not r(Y)": "#false :- p(X); X > 1; not q(X,Y): not r(Y).",
+    },
+    "2 = { s(X): q(X,_) }.": {
+        "remove": "",
+        "= 2 -> = 3": "3 = { s(X): q(X,_) }.",
+        "= 2 -> = 1": "1 = { s(X): q(X,_) }.",
+        "drop q(X,_)": "2 = { s(X) }.",
+        "q(X,_) -> not q(X,_)": "2 = { s(X): not q(X,_) }.",
+    },
+    ":~ s(X). [3@1,X]": {
+        "remove": "",
+        "weight 3 -> 4": ":~ s(X). [4@1,X]",
+        "weight 3 -> 2": ":~ s(X). [2@1,X]",
+        "priority 1 -> 2": ":~ s(X). [3@2,X]",
+        "priority 1 -> 0": ":~ s(X). [3@0,X]",
+        "drop s(X)": ":~ . [3@1,X]",
+        "s(X) -> not s(X)": ":~ not s(X). [3@1,X]",
+    },
+}
+
+# A program with mutants that are killed, refused and endless, and an equivalent one.
+COUNTER = "% Count.\nn(0).\nn(X+1) :- n(X), X < limit.\n#show n/1.\n"
+ASKED = [
+    Query(("counter",), "", shown("n(0)", "n(1)"), ("-c", "limit=1")),
+]
+EQUIVALENT = ("counter", "#show n/1.", "remove")
+KILLED = ("counter", "n(0).", "n(0) -> n(1)")
+STALE = ("counter", "n(7).", "remove")
+
+
+def listing(*keys):
+    """The text that lists these mutants as equivalent."""
+    return "\n".join(
+        f"[[equivalent]]\nfile = '{file}'\nrule = '{rule}'\nchanges = ['{change}']\nreason = 'R.'\n"
+        for file, rule, change in keys
+    )
+
+
+@pytest.fixture
+def mutated(tmp_path, monkeypatch, capsys):
+    """A function that runs the command on COUNTER; its status, output, messages and report."""
+    monkeypatch.setattr(mutate, "SECONDS", 0.2)
+    report, listed, folder = (tmp_path / name for name in ("report.md", "listed.toml", "folder"))
+    folder.mkdir()
+    (folder / "counter.lp").write_text(COUNTER)
+
+    def run(text, *arguments):
+        listed.write_text(text)
+        files = ["--listed", str(listed), "--report", str(report)]
+        status = mutate.main([*files, *arguments], folder, lambda: ASKED, list)
+        written = report.read_text() if report.exists() else None
+        return status, *capsys.readouterr(), written
+
+    return run
+
+
+def test_these_mutants_are_made(tmp_path):
+    (tmp_path / "rules.lp").write_text("% A comment.\n" + RULES)
+    made = {rule: {} for rule in MUTANTS}
+    for mutant in mutate.mutants(tmp_path, "rules"):
+        made[mutant.rule][mutant.change] = mutant.text
+    assert made == MUTANTS
+
+
+def test_all_is_well_if_only_listed_mutants_survive(mutated):
+    status, out, _, report = mutated(listing(EQUIVALENT))
+    assert status == 0
+    assert out == "11 mutants: 1 survived, 7 killed, 2 refused, 1 endless, 0 larger\n"
+    assert "| `counter.lp` | 3 | 2 | 2 | 4 | 11 | 0 | 7 | 2 | 1 | 0 | 1 |" in report.splitlines()
+    assert "- `remove`: R." in report.splitlines()
+    assert mutated(listing(EQUIVALENT), "-j", "3")[3] == report
+
+
+def test_what_was_tried_is_not_tried_again(mutated, tmp_path, monkeypatch):
+    """Unless the encoding, or a query, is another one."""
+    known = tmp_path / "known.txt"
+    mutated(listing(EQUIVALENT), "--known", str(known), "counter", "--sample", "4")
+    assert len(known.read_text().splitlines()) == 4
+    _, out, _, report = mutated(listing(EQUIVALENT), "--known", str(known))
+    assert out == mutated(listing(EQUIVALENT))[1]
+    tried, fates = [], mutate.fates
+
+    def note(folder, chosen, *more):
+        for mutant, fate in fates(folder, chosen, *more):
+            tried.append(mutant)
+            yield mutant, fate
+
+    monkeypatch.setattr(mutate, "fates", note)
+    assert mutated(listing(EQUIVALENT), "--known", str(known))[3] == report
+    assert not tried
+    (tmp_path / "folder/counter.lp").write_text(COUNTER.replace("n(X)", "n(X), X >= 0"))
+    mutated(listing(EQUIVALENT), "--known", str(known))
+    assert len(tried) > 11
+
+
+MARKS = """
+import sys
+from pathlib import Path
+from oracles import rule_mutation as mutate
+from oracles.known_answers import Query, shown
+folder = Path(sys.argv[1])
+asked = [Query(("counter", name), "", shown()) for name in "abcdef"]
+marks = mutate.marks(folder, mutate.mutants(folder, "counter"), asked, [])
+print(*marks.values())
+"""
+
+
+def test_what_was_tried_is_known_to_another_process(tmp_path):
+    """Whatever the order of its sets."""
+    for name in ("counter", *"abcdef"):
+        (tmp_path / f"{name}.lp").write_text(COUNTER)
+    printed = set()
+    for seed in "123":
+        call = [sys.executable, "-c", MARKS, str(tmp_path)]
+        hashed = {**os.environ, "PYTHONHASHSEED": seed, "PYTHONPATH": str(ROOT / "tests")}
+        printed.add(subprocess.run(call, env=hashed, capture_output=True, check=True).stdout)
+    assert len(printed) == 1
+    assert all(printed)
+
+
+def test_a_survivor_that_is_not_listed_is_a_fault(mutated):
+    status, out, _, report = mutated("equivalent = []")
+    assert status == 1
+    assert out.splitlines()[1:] == ["survives, not listed: counter | #show n/1. | remove"]
+    assert "- `remove`: **Not listed.**" in report.splitlines()
+
+
+def test_one_entry_may_list_several_rules(mutated):
+    entry = listing(EQUIVALENT).replace("rule = '#show n/1.'", "rule = ['#show n/1.', 'n(0).']")
+    status, out, *_ = mutated(entry)
+    assert status == 1
+    assert out.splitlines()[1:] == ["listed, but killed: counter | n(0). | remove"]
+
+
+def test_a_listed_mutant_that_is_killed_or_is_none_is_a_fault(mutated):
+    status, out, *_ = mutated(listing(EQUIVALENT, KILLED, STALE))
+    assert status == 1
+    assert out.splitlines()[1:] == [
+        "listed, but killed: counter | n(0). | n(0) -> n(1)",
+        "listed, but no mutant: counter | n(7). | remove",
+    ]
+
+
+def test_a_fast_mutant_that_only_grounds_to_more_is_larger(tmp_path):
+    """And queries of the one form are not asked of the other."""
+    (tmp_path / "fast").mkdir()
+    (tmp_path / "some.lp").write_text("few(X) :- n(X), X < 1.\n")
+    (tmp_path / "fast/topomap.lp").write_text('#include "../some.lp".\n#show n/1.\nm :- n(7).\n')
+    (tmp_path / "fast/some.lp").write_text("few(X) :- n(X), X < 1.\n")
+    asked = [
+        Query(("some",), "n(0).", shown("few(0)", "n(0)")),
+        Query(("fast/topomap", "fast/some"), "n(0). n(1).", shown("n(0)", "n(1)")),
+    ]
+    report, listed = tmp_path / "report.md", tmp_path / "listed.toml"
+    listed.write_text("equivalent = []")
+    files = ["--listed", str(listed), "--report", str(report)]
+    assert mutate.main(files, tmp_path, lambda: asked, lambda: asked[1:]) == 1
+    rows = report.read_text().splitlines()
+    assert "| `some.lp` | 1 | 2 | 2 | 2 | 7 | 2 | 3 | 2 | 0 | 0 | 0 |" in rows
+    assert "| `fast/some.lp` | 1 | 2 | 2 | 2 | 7 | 2 | 0 | 2 | 0 | 3 | 0 |" in rows
+    assert "| all of `fast/` | 3 | 3 | 3 | 4 | 13 | 5 | 1 | 2 | 0 | 5 | 0 |" in rows
+
+
+def test_a_sample_is_of_mutants_that_are_not_listed_and_writes_nothing(mutated):
+    status, out, _, report = mutated(listing(EQUIVALENT), "--sample", "99")
+    assert (status, report) == (0, None)
+    assert out.startswith("10 mutants: 0 survived,")
+
+
+@pytest.mark.parametrize(
+    ("text", "arguments", "message"),
+    [
+        ("equivalent = ", (), "listed.toml"),
+        ("[[equivalent]]\nfile = 'counter'", (), "listed.toml"),
+        ("equivalent = []", ("links",), "links: no such encoding"),
+    ],
+)
+def test_bad_input_is_refused_in_one_line(mutated, text, arguments, message):
+    status, out, err, report = mutated(text, *arguments)
+    assert (status, out, report) == (2, "", None)
+    assert err.startswith("mutate: ")
+    assert message in err
+    assert err.count("\n") == 1
+
+
+def test_an_encoding_that_no_query_loads_is_refused(mutated, tmp_path):
+    (tmp_path / "folder/other.lp").write_text("a.\n")
+    assert mutated(listing(EQUIVALENT))[2].startswith("mutate: other: no query")
+
+
+def test_an_encoding_that_gives_a_wrong_answer_unchanged_is_refused(mutated, monkeypatch):
+    wrong = [Query(("counter",), "", shown("n(0)"), ("-c", "limit=1"))]
+    monkeypatch.setitem(globals(), "ASKED", wrong)
+    status, out, err, _ = mutated(listing(EQUIVALENT))
+    assert (status, out) == (2, "")
+    assert err == "mutate: counter: a query has a wrong answer without a change\n"
+
+
+@pytest.mark.parametrize(
+    "suite",
+    [
+        squares,
+        ends,
+        demands,
+        faults,
+        *(pytest.param(s, marks=pytest.mark.long) for s in (theory, phases, check, following)),
+    ],
+)
+def test_the_encodings_answer_right(suite):
+    """So nothing but its change kills a mutant."""
+    programs = {}
+    for query in suite():
+        if query.files not in programs:
+            names = mutate.closure(ENCODINGS, query.files)
+            parts = (mutate.statements(ENCODINGS, name) for name in names)
+            programs[query.files] = "\n".join(str(rule) for part in parts for rule in part)
+        assert mutate.tried(programs[query.files], query) == "survived", query
+    assert programs
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("fast", [False, True])
+def test_no_statement_can_be_removed(fast):
+    """Each, but for the listed ones, is missed by some query."""
+    reasons = mutate.listed(mutate.LISTED)
+    chosen = [
+        mutant
+        for file in mutate.named_files(ENCODINGS)
+        for mutant in mutate.mutants(ENCODINGS, file)
+        if file.startswith(mutate.FAST) == fast
+        if mutant.kind == "remove" and mutant.key not in reasons
+    ]
+    assert len(chosen) > 60
+    for mutant, fate in mutate.fates(ENCODINGS, chosen, queries(), sizes(), 1):
+        assert fate in ("killed", "refused", "larger"), mutant
+
+
+@pytest.mark.long
+def test_a_sample_is_killed(capsys):
+    status = mutate.main(["--sample", "100", "--seed", "sample"])
+    assert status == 0, capsys.readouterr().out
