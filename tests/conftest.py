@@ -17,7 +17,7 @@ from oracles.brute_force import Hypothesis, best, tree
 from topomap.cli import main
 from topomap.model.vocabulary import OPTIMIZING
 from topomap.runtime.files import output
-from topomap.solver.solving import FORMS
+from topomap.solver.programs import FORMS
 
 ROOT = Path(__file__).resolve().parents[1]
 ENCODINGS = ROOT / "encodings"

@@ -12,7 +12,8 @@ from oracles.misreadings import brute, corrupted, expected
 from oracles.statements import FIGURES
 from oracles.worlds import random_experience
 from topomap.cli import main
-from topomap.model.experience import Experience, explore, parse, read
+from topomap.model.experience import Experience, observe
+from topomap.model.facts import parse, read
 from topomap.model.query import Query
 from topomap.runtime.errors import InputError
 from topomap.runtime.watch import Watch
@@ -205,7 +206,7 @@ def test_without_misreadings_the_answers_are_those_without_noise():
 def back_and_forth(size: int, route: str):
     made = grid(size, size)
     (first, *_), slots = ((0, 0), 0), ["NESW".index(letter) for letter in route]
-    return explore(made.map, (first, slots[0]), slots)
+    return observe(made.map, (first, slots[0]), slots)
 
 
 RETRACED = {

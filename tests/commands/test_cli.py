@@ -10,7 +10,7 @@ import time
 import pytest
 from conftest import BIN, ROOT, answers
 from topomap.cli import SUBCOMMANDS
-from topomap.model.experience import read
+from topomap.model.facts import read
 from topomap.model.vocabulary import PARTS
 from topomap.runtime import formats
 

@@ -25,7 +25,8 @@ from topomap.documents.answers import map_json
 from topomap.documents.verdicts import verdicts
 from topomap.drawing.scenes import Scene
 from topomap.exchange import exports, imports
-from topomap.model.experience import Experience, explore, read
+from topomap.model.experience import Experience, observe
+from topomap.model.facts import read
 from topomap.model.query import Query
 from topomap.model.topology import gid
 from topomap.runtime.errors import InputError
@@ -112,7 +113,7 @@ def real(draw, steps):
     for _ in range(steps):
         route.append(draw.choice(sorted(world.stars[place])))
         place, _ = world.links[place, route[-1]]
-    seen, at = explore(world, start, route)
+    seen, at = observe(world, start, route)
     seen = signed(seen, draw)
     return seen, Scene(seen.map_of(at), at, "made.lp")
 

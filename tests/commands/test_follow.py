@@ -14,7 +14,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from oracles.brute_force import certain
 from oracles.worlds import marks, random_experience
-from topomap.model.experience import explore, parse, read
+from topomap.model.experience import observe
+from topomap.model.facts import parse, read
 from topomap.model.query import Query
 from topomap.questions.lines import decoded
 from topomap.questions.records import Record
@@ -143,7 +144,7 @@ def settled_by_a_marker():
     for turn in [0, 1, 1, 1]:
         route.append((slot + turn) % 4)
         place, slot = made.map.links[place, route[-1]]
-    return explore(made.map, ((0, 0), EAST), route, drops=[16])[0]
+    return observe(made.map, ((0, 0), EAST), route, drops=[16])[0]
 
 
 @pytest.mark.long

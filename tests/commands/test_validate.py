@@ -16,7 +16,7 @@ from hypothesis import strategies as st
 from oracles.instance_faults import KINDS, corrupted, errors
 from test_cli import BAD
 from topomap import cli
-from topomap.model.experience import HINT, SIGNATURES, parse, read
+from topomap.model.facts import HINT, SIGNATURES, parse, read
 from topomap.runtime.errors import InputError, printable
 from topomap.worlds.environment import grid, lattice, maze
 from topomap.worlds.instance import instance

@@ -25,7 +25,7 @@ from topomap.drawing.layout import layout
 from topomap.drawing.planarize import lacking, planar_part, routed
 from topomap.drawing.scenes import Scene
 from topomap.model import words
-from topomap.model.experience import read
+from topomap.model.facts import read
 from topomap.model.query import Query
 from topomap.model.topology import TopologicalMap, gid, label
 from topomap.runtime.watch import Watch

@@ -17,7 +17,7 @@ from topomap.drawing import scenes
 from topomap.drawing.layout import layout, straight
 from topomap.drawing.scenes import Scene
 from topomap.drawing.terminal import ARROWS, ASCII, BRAILLE, DOTS, LETTERS, text
-from topomap.model.experience import explore
+from topomap.model.experience import observe
 from topomap.model.query import Query
 from topomap.model.topology import TopologicalMap
 from topomap.runtime.watch import Watch
@@ -40,7 +40,7 @@ def walk(world, steps, draw, start=None):
         slot = draw.choice([s for s in sorted(world.stars[place]) if (place, s) in world.links])
         route.append(slot)
         place, slot = world.links[place, slot]
-    seen, at = explore(world, begin, route)
+    seen, at = observe(world, begin, route)
     return Scene(seen.map_of(at), at, "made")
 
 

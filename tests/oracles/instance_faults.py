@@ -5,7 +5,7 @@ import re
 
 import clingo
 from conftest import ENCODINGS
-from topomap.model.experience import ARITY
+from topomap.model.facts import ARITY
 from topomap.runtime.limits import LARGEST
 
 from oracles.worlds import random_experience

@@ -13,7 +13,7 @@ import pytest
 from conftest import ROOT
 from topomap.documents.maps import KINDS, document
 from topomap.drawing import scenes
-from topomap.model.experience import read
+from topomap.model.facts import read
 from topomap.model.found import UNPROVED, Found
 from topomap.model.query import Query
 from topomap.questions import robot

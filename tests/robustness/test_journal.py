@@ -10,7 +10,7 @@ from functools import cache
 import pytest
 from conftest import BIN, ROOT, TRIED, run
 from topomap.cli import main
-from topomap.model.experience import read
+from topomap.model.facts import read
 from topomap.model.query import Query
 from topomap.paper import beyond, statistics
 from topomap.runtime.journal import Journal

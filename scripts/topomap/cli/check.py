@@ -48,7 +48,7 @@ def run(args: argparse.Namespace) -> int:
     """Check maps that anyone made, by rules and by definition."""
     from topomap.api.check import check
     from topomap.documents import maps
-    from topomap.model.experience import read
+    from topomap.model.facts import read
     from topomap.runtime.watch import heeding
 
     documents = maps.read_maps(args.maps)

@@ -34,7 +34,7 @@ def add(group: Any) -> None:
 def run(args: argparse.Namespace) -> int:
     """Tell why a statement is so."""
     from topomap.api.explain import explain
-    from topomap.model.experience import read
+    from topomap.model.facts import read
     from topomap.runtime.watch import heeding
 
     experience = read(args.instance)

@@ -71,7 +71,7 @@ def add(group: Any) -> None:
 def run(args: argparse.Namespace) -> int:
     """Say where to go next."""
     from topomap.api.explore import OPTIMAL, candidates, explore
-    from topomap.model.experience import read
+    from topomap.model.facts import read
     from topomap.runtime.watch import heeding
 
     experience = read(args.instance)

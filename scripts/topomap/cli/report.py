@@ -46,7 +46,7 @@ def add(group: Any) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Write the page about the instances."""
-    from topomap.model.experience import read
+    from topomap.model.facts import read
     from topomap.model.query import Query
     from topomap.page.exploration import Exploration, given_maps
     from topomap.page.report import Asked, page

@@ -39,7 +39,7 @@ def add(group: Any) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Search the tree of an instance: count it, or find a closed map best-first."""
-    from topomap.model.experience import read
+    from topomap.model.facts import read
     from topomap.model.query import Query
     from topomap.paper import statistics
     from topomap.runtime.watch import Run

@@ -70,7 +70,7 @@ def add(group: Any) -> None:
 def run(args: argparse.Namespace) -> int:
     """Enumerate the maps of each instance."""
     from topomap.documents.maps import real_map
-    from topomap.model.experience import read
+    from topomap.model.facts import read
 
     _with_noise(args)
     inputs = []

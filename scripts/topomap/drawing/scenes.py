@@ -9,7 +9,8 @@ from typing import Any
 
 from topomap.documents import maps
 from topomap.documents.check import STEP_RULES
-from topomap.model.experience import MOST_SLOTS, Experience, parse
+from topomap.model.experience import MOST_SLOTS, Experience
+from topomap.model.facts import parse
 from topomap.model.found import UNPROVED, Found
 from topomap.model.query import Query
 from topomap.model.topology import Gateway, TopologicalMap

@@ -10,7 +10,8 @@ from itertools import islice, pairwise
 from typing import Any
 
 from topomap.model import words
-from topomap.model.experience import Experience, Facts, Fault
+from topomap.model.experience import Experience
+from topomap.model.facts import Facts, Fault
 from topomap.runtime import files
 from topomap.runtime.errors import InputError
 
