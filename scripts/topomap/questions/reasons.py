@@ -11,7 +11,7 @@ from functools import cached_property
 
 from topomap.model.experience import DState, Experience
 from topomap.model.topology import gid
-from topomap.model.words import number
+from topomap.model.words import number, plural
 from topomap.runtime.errors import printable
 
 RULES = {
