@@ -10,6 +10,7 @@ from conftest import ROOT
 from defusedxml import ElementTree
 from topomap.api.maps import Map
 from topomap.api.simulate import simulate
+from topomap.api.solve import solve
 from topomap.documents.answers import map_line
 from topomap.drawing import ready
 from topomap.exchange.imports import import_map
@@ -140,6 +141,22 @@ def test_the_graph_is_what_export_writes(topomap, tmp_path):
         edges = [plain(list(graph.edges(keys=True, data=True))) for graph in (ours, written)]
         assert edges[0] == edges[1]
         assert json.loads(import_map(str(file)))["maps"] == [one.json()]
+
+
+def test_a_map_that_was_found_does_not_say_how_many_there_are():
+    """More of them may come: solve gives each as it is found."""
+    answer = solve(SEEN, closed=True)
+    drawn = answer[1]._repr_svg_()
+    assert ">map 2 found, consistent<" in drawn
+    assert str(answer[1]).startswith("map 2: ")
+
+
+def test_maps_with_wrong_views_say_which(topomap):
+    """Also where none is wrong."""
+    told = json.loads(topomap("solve", GRID, "--noise", 0, "--closed", "--json").stdout)["maps"]
+    made = solve(SEEN, noise=0, closed=True)
+    assert [one.json() for one in sorted(made, key=by_at)] == sorted(told, key=lambda m: m["at"])
+    assert {"misread"} <= set(told[0])
 
 
 @pytest.mark.parametrize("form", ["svg", "png", "pdf"])

@@ -39,9 +39,9 @@ class Map:
         name: str = "",
         noisy: bool = False,
     ):
-        """The map of what was found in an experience: the ``number``-th of ``many``, which are
-        all that there are if ``whole``. ``name`` says where the experience is from; ``noisy``
-        tells that views were allowed to be wrong, as ``json`` then says which were."""
+        """The map of what was found in an experience: the ``number``-th of ``many`` (0: how many is
+        not known), which are all that there are if ``whole``. ``name`` says where the experience
+        is from; ``noisy`` tells that views were allowed to be wrong: ``json`` says which were."""
         self._seen, self._found = experience, found
         self._number, self._many, self._whole = number, many, whole
         self._name, self._noisy = name, noisy

@@ -56,12 +56,17 @@ class Answer(Sequence[Map]):
                 else:
                     self._count += 1
                     self._last = found
-                    yield Map(self.experience, found)
+                    yield self._map(found)
         if attempt.fault and candidate and not self._count:
             self._count = 1
             self._last = replace(candidate, kind=UNPROVED)
-            yield Map(self.experience, self._last)
+            yield self._map(self._last)
         self._fault = attempt.fault
+
+    def _map(self, found: Found) -> Map:
+        """A map, the last one so far; how many there will be is not known."""
+        noisy = self.query.noise is not None
+        return Map(self.experience, found, self._count, 0, noisy=noisy)
 
     def _all(self) -> list[Map]:
         self._kept.extend(self._stream)

@@ -29,10 +29,10 @@ MOST_PLACES = 1000  # in a picture
 class Scene:
     """A map, and the dstate after each step of the route in it, from step 0 (or none).
 
-    ``name`` says where it is from. It is map ``number`` of ``many``, which are all if
-    ``whole``. ``kind`` says what these maps are; if it is empty, that is not known, and they are
-    those that were given. ``caption`` is a title instead of these. ``marker`` says where the marker
-    was put down, seen and taken up, if it was.
+    ``name`` says where it is from. It is map ``number`` of ``many`` (0: how many is not known),
+    which are all if ``whole``. ``kind`` says what these maps are; if it is empty, that is not
+    known, and they are those that were given. ``caption`` is a title instead of these. ``marker``
+    says where the marker was put down, seen and taken up, if it was.
     """
 
     world: TopologicalMap
@@ -50,7 +50,7 @@ class Scene:
         """What the map is, in two lines; an instance by the stem of its file."""
         world = self.world
         kind = short(printable(self.kind), 60)
-        which = f"map {self.number} of {self.many}"
+        which = f"map {self.number}" + f" of {self.many}" * bool(self.many)
         if not self.whole:
             which += " found"
         elif self.many == 1:
