@@ -6,6 +6,7 @@ import shutil
 import signal
 import subprocess
 import sys
+import time
 from collections import Counter
 from pathlib import Path
 
@@ -16,7 +17,7 @@ from oracles.brute_force import Hypothesis, best, tree
 from topomap.cli import main
 from topomap.model.vocabulary import OPTIMIZING
 from topomap.runtime.files import output
-from topomap.solver.solving import FORMS
+from topomap.solver.programs import FORMS
 
 ROOT = Path(__file__).resolve().parents[1]
 ENCODINGS = ROOT / "encodings"
@@ -27,11 +28,22 @@ BIN = Path(sys.executable).parent
 # Under nohup, or in the background of a shell, SIGINT is ignored, and by all that is started.
 signal.signal(signal.SIGINT, signal.default_int_handler)
 ENDS = "passed", "failed", "error", "skipped"
+BEGUN = time.monotonic()
 TRIED = Counter()  # what was tried how often, for the last lines of a test run
 
 
 def pytest_addoption(parser):
     parser.addoption("--tried", metavar="FILE", help="write there what was tried how often")
+    parser.addoption(
+        "--within", metavar="MINUTES", type=float, help="skip tests that would begin later"
+    )
+
+
+def pytest_runtest_setup(item):
+    """On a slow machine what is left out is told, and the run ends in time."""
+    minutes = item.config.getoption("within")
+    if minutes is not None and time.monotonic() > BEGUN + 60 * minutes:
+        pytest.skip(f"not begun within {minutes:g} minutes")
 
 
 def pytest_sessionfinish(session):

@@ -12,6 +12,7 @@ def run() -> None:
     if sys.argv[1:2] == ["clingo"]:  # which has its own ways with signals and streams
         from topomap.cli.clingo import run as clingo
 
+        signal.signal(signal.SIGINT, signal.SIG_DFL)
         sys.exit(clingo(sys.argv[2:]))
     both = signal.SIGINT, signal.SIGTERM
     heeded = [number for number in both if signal.getsignal(number) != signal.SIG_IGN]

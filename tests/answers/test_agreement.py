@@ -21,7 +21,7 @@ from topomap.paper.statistics import Tally
 from topomap.runtime.watch import Watch
 from topomap.search import traversal
 from topomap.solver import solving
-from topomap.solver.solving import FORMS
+from topomap.solver.programs import FORMS
 
 QUICK = settings(
     max_examples=12,

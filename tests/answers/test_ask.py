@@ -12,13 +12,14 @@ from oracles.brute_force import Hypothesis
 from oracles.statements import FIGURES, PROPERTIES, RELATIONS, relation
 from oracles.worlds import WORLDS, random_experience
 from topomap.documents.check import by_definition, by_rules
-from topomap.model.experience import parse, read
+from topomap.model.facts import parse, read
 from topomap.model.query import Query
 from topomap.questions import ask, statements
 from topomap.questions.ask import Inquiry
 from topomap.runtime.errors import InputError
 from topomap.runtime.watch import Stopped, Watch
-from topomap.solver.solving import FORMS, forget, hypotheses
+from topomap.solver.programs import FORMS, forget
+from topomap.solver.solving import hypotheses
 
 SIGNS = {
     "<": int.__lt__,
@@ -354,7 +355,7 @@ class Impatient(Watch):
     """It stops after so many maps."""
 
     def __init__(self, most):
-        super().__init__(quiet=True)
+        super().__init__()
         self.most = most
 
     def tick(self):

@@ -162,7 +162,7 @@ def test_maps_of_part_of_the_steps_are_told(inside, maps):
     at = [{"at": one["at"][:10]} for one in document["maps"][:1]] + document["maps"][1:]
     maps.write_text(json.dumps(at))
     done = inside("check", GRID, maps)
-    assert done.stdout == "3 maps, none unsound; 1 of part of the 16 steps\n"
+    assert done.stdout == "3 maps, none unsound; 1 of them for only part of the 16 steps\n"
 
 
 def test_other_faults_of_maps(inside, maps, tmp_path):

@@ -14,7 +14,7 @@ from conftest import ENCODINGS, ROOT, Truth, run
 from oracles.broken_rules import Assignment, assignments, reasons
 from oracles.worlds import random_experience
 from topomap import cli
-from topomap.model.experience import parse, read
+from topomap.model.facts import parse, read
 from topomap.questions.reasons import KINDS, told_marker
 
 MOST = 2500  # assignments that are tried by brute force

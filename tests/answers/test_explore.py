@@ -15,8 +15,8 @@ from conftest import BIN, ENCODINGS, ROOT, TRIED, run
 from oracles.walks import alike, asked, best, gone, same, scattered, sight, standing
 from topomap import cli
 from topomap.documents import bisimulation
-from topomap.model.experience import explore as experienced
-from topomap.model.experience import read
+from topomap.model.experience import observe as experienced
+from topomap.model.facts import read
 from topomap.model.query import Query
 from topomap.questions import explore
 from topomap.questions.explore import plan

@@ -12,7 +12,8 @@ from oracles.misreadings import brute, corrupted, expected
 from oracles.statements import FIGURES
 from oracles.worlds import random_experience
 from topomap.cli import main
-from topomap.model.experience import Experience, explore, parse, read
+from topomap.model.experience import Experience, observe
+from topomap.model.facts import parse, read
 from topomap.model.query import Query
 from topomap.runtime.errors import InputError
 from topomap.runtime.watch import Watch
@@ -205,7 +206,7 @@ def test_without_misreadings_the_answers_are_those_without_noise():
 def back_and_forth(size: int, route: str):
     made = grid(size, size)
     (first, *_), slots = ((0, 0), 0), ["NESW".index(letter) for letter in route]
-    return explore(made.map, (first, slots[0]), slots)
+    return observe(made.map, (first, slots[0]), slots)
 
 
 RETRACED = {
@@ -318,7 +319,7 @@ def test_maps_of_clingo_with_misreadings_are_checked(topomap, tmp_path):
 
 UNSEEN = {
     "slots(4). view(0,0). turn(1,2). view(1,0).": "turn 2: no gateway there after step 0",
-    "slots(4). view(0,0). turn(1,0). view(1,2).": "the view lacks slot 0, the gateway stood at",
+    "slots(4). view(0,0). turn(1,0). view(1,2).": "the view lacks slot 0, the gateway where",
     "slots(4). view(0,0). turn(1,0).": "step 1: no view",
     "slots(4). turn(1,0). view(1,0).": "step 0: no view",
 }

@@ -9,7 +9,7 @@ import pytest
 from conftest import ENCODINGS, ROOT, TRIED, plain
 from oracles.brute_force import Hypothesis, best, certain, tree
 from oracles.worlds import WORLDS, marks, random_experience
-from topomap.model.experience import read
+from topomap.model.facts import read
 from topomap.model.query import Query
 from topomap.runtime.watch import Watch
 from topomap.search import traversal

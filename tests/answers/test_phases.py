@@ -10,13 +10,13 @@ from conftest import TRIED
 from oracles import phase_answers as phased
 from oracles.worlds import WORLDS, random_world, with_marker
 from topomap.documents.check import by_definition
-from topomap.model.experience import Experience, explore
+from topomap.model.experience import Experience, observe
 from topomap.model.query import Query
 from topomap.model.topology import TopologicalMap
 from topomap.runtime.watch import Stopped, Watch
 from topomap.search import traversal
 from topomap.solver import phases, plane, solving
-from topomap.solver.solving import FORMS, Program
+from topomap.solver.programs import FORMS, Program
 from topomap.worlds.environment import grid, maze, world
 from topomap.worlds.instance import instance
 
@@ -116,7 +116,7 @@ def toured(draw: random.Random, most: int, make=square_world) -> tuple[Experienc
             place, slot = there
         if len(route) < most:
             marker = with_marker(route) if len(route) % 3 == 2 else ()
-            experience = explore(made, start, route, *marker)[0]
+            experience = observe(made, start, route, *marker)[0]
             cut = experience.steps + draw.randint(-3, 1)
             return experience, max(cut, 0) if draw.random() < 0.2 else None
 
@@ -187,7 +187,7 @@ def test_streets():
 
 def test_what_is_asked_up_to_a_step_is_not_told_by_later_ones():
     route = ["NESW".index(way) for way in "ESSENNESSWWWNEEENWWWS" + "NEEESWSENNWWWSSE"]
-    experience = explore(grid(3, 4).map, ((0, 0), 1), route)[0]
+    experience = observe(grid(3, 4).map, ((0, 0), 1), route)[0]
     assert len(agree(experience, 21, MORE[:1], searched=False)) == 8
     assert len(agree(experience, None, MORE[:1], searched=False)) < 8
 
@@ -328,11 +328,11 @@ def test_many_random_worlds(block):
 
 SQUARES = {name: world for name, world in WORLDS.items() if world.slots == 4}
 TOLD = {
-    "a square": explore(grid(2, 2).map, ((0, 0), 2), [1, 2, 3, 0, 1])[0],
-    "a corridor, three times": explore(grid(1, 4).map, ((0, 1), 1), [3, 1, 1, 1, 3, 3, 3, 1, 1, 1])[
+    "a square": observe(grid(2, 2).map, ((0, 0), 2), [1, 2, 3, 0, 1])[0],
+    "a corridor, three times": observe(grid(1, 4).map, ((0, 1), 1), [3, 1, 1, 1, 3, 3, 3, 1, 1, 1])[
         0
     ],
-    "a start that is not left by": explore(grid(2, 3).map, ((0, 1), 2), [1, 2, 3, 3, 0, 1, 2])[0],
+    "a start that is not left by": observe(grid(2, 3).map, ((0, 1), 2), [1, 2, 3, 3, 0, 1, 2])[0],
 }
 
 

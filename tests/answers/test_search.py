@@ -8,7 +8,8 @@ import pytest
 from conftest import COLUMNS, ROOT
 from oracles.brute_force import Hypothesis as Slow
 from oracles.worlds import random_experience
-from topomap.model.experience import Experience, read
+from topomap.model.experience import Experience
+from topomap.model.facts import read
 from topomap.model.query import Query
 from topomap.paper import beyond
 from topomap.paper.statistics import Tally, searched

@@ -6,7 +6,8 @@ import random
 import pytest
 from conftest import ROOT, TRIED
 from oracles.worlds import random_world
-from topomap.model.experience import explore, read
+from topomap.model.experience import observe
+from topomap.model.facts import read
 from topomap.model.query import Query
 from topomap.questions import robot
 from topomap.questions.robot import Robot, random_walk, reached
@@ -45,7 +46,7 @@ def worlds(number, seed):
 
 def ended_as_it_says(made, start, outcome):
     """What the outcome says, held against the search and the world."""
-    experience, truth = explore(made, start, routed(made, start, outcome.experience))
+    experience, truth = observe(made, start, routed(made, start, outcome.experience))
     assert experience == outcome.experience
     best = solving.best(experience, ALL, Watch(), traversal.hypotheses)
     best = sorted(one.at for one in best if one.proved)
@@ -178,7 +179,7 @@ def test_the_command_says_what_came_of_it(topomap, tmp_path):
     experience = read(instance)
     start = (0, 0), 1
     assert (
-        explore(grid(3, 3).map, start, routed(grid(3, 3).map, start, experience))[0] == experience
+        observe(grid(3, 3).map, start, routed(grid(3, 3).map, start, experience))[0] == experience
     )
     assert answer == {
         "format": 1,

@@ -19,7 +19,8 @@ from pathlib import Path
 from typing import Any
 
 from oracles import walks
-from topomap.model.experience import DState, read
+from topomap.model.experience import DState
+from topomap.model.facts import read
 from topomap.model.query import Query
 from topomap.questions.standings import Standing
 from topomap.runtime.files import output

@@ -7,7 +7,7 @@ from topomap.model.query import Query
 from topomap.paper.statistics import tree
 from topomap.runtime.journal import Journal
 from topomap.runtime.watch import Watch
-from topomap.solver import share, solving
+from topomap.solver import programs, share
 from topomap.worlds.environment import grid
 from topomap.worlds.instance import instance
 
@@ -25,7 +25,7 @@ def speedup(jobs: int) -> list[dict[str, Any]]:
         experience = instance(grid(*size), "snake").experience
         seconds, figures = [], []
         for number in (1, jobs):
-            solving.forget()
+            programs.forget()
             figures.append({})
             begun = time.perf_counter()
             with share.crew(number) as crew:

@@ -13,11 +13,12 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from topomap.model.experience import Experience, read
+from topomap.model.experience import Experience
+from topomap.model.facts import read
 from topomap.model.query import Query
 from topomap.runtime.files import output
 from topomap.runtime.watch import Stopped, Watch
-from topomap.solver import online, solving
+from topomap.solver import online, programs, solving
 from topomap.solver.online import OnlineSolver
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -60,12 +61,12 @@ def from_scratch(
     experience: Experience, query: Query, seconds: float
 ) -> tuple[int, list[online.DState], int]:
     """The number of hypotheses, the best maps, and the ground rules of the count."""
-    solving.forget()
+    programs.forget()
     watch = Watch(seconds)
     number, _ = solving.count(experience, query, watch=watch, grown=False)
     program = solving._last.program
     rules = int(program.control.statistics["problem"]["lp"]["rules"]) if program else 0
-    solving.forget()
+    programs.forget()
     best = [one.at for one in solving.best(experience, query, watch) if one and one.proved]
     return number, sorted(best), rules
 

@@ -19,7 +19,8 @@ from typing import Any, ClassVar
 
 import clingo
 from topomap.documents.check import by_definition
-from topomap.model.experience import DState, Experience, read
+from topomap.model.experience import DState, Experience
+from topomap.model.facts import read
 from topomap.model.query import Query
 from topomap.paper import figure4
 from topomap.paper.statistics import Tally, tree
@@ -27,7 +28,7 @@ from topomap.runtime.journal import Journal
 from topomap.runtime.watch import Stopped, Watch
 from topomap.search import traversal
 from topomap.search.hypothesis import Hypothesis
-from topomap.solver import solving
+from topomap.solver import programs, solving
 
 At = tuple[DState, ...]
 
@@ -59,7 +60,7 @@ class Control(clingo.Control):
 
 def told() -> dict[str, int]:
     """Rules, atoms, choices and conflicts of all clingos, unless one has not told them."""
-    solving.forget()
+    programs.forget()
     gc.collect()
     return dict(Control.figures) if Control.made == Control.told else {}
 
@@ -187,7 +188,7 @@ def faults(task: Task) -> Iterator[str]:
 def main() -> None:
     given = json.load(sys.stdin)
     way = given["way"]
-    solving.FORMS["baseline"] = Path(given["baseline"])
+    programs.FORMS["baseline"] = Path(given["baseline"])
     task = Task(given["ask"], Query(), Experience(2, (frozenset([0]),), (), (frozenset(),)))
     about = {}
     if given["instance"]:

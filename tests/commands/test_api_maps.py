@@ -13,7 +13,8 @@ from topomap.api.simulate import simulate
 from topomap.documents.answers import map_line
 from topomap.drawing import ready
 from topomap.exchange.imports import import_map
-from topomap.model.experience import Experience, read
+from topomap.model.experience import Experience
+from topomap.model.facts import read
 from topomap.model.found import UNPROVED, Found
 from topomap.model.query import Query
 from topomap.runtime import extras

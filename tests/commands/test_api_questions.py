@@ -9,7 +9,7 @@ from conftest import ROOT
 from topomap.api.explore import candidates, check_proofs
 from topomap.cli import main
 from topomap.runtime.errors import InputError
-from topomap.solver.solving import forget
+from topomap.solver.programs import forget
 
 SNAKE = "instances/grid-3x3-snake.lp"
 LARGER = "instances/grid-4x4-snake.lp"
@@ -305,7 +305,7 @@ def test_what_a_follower_refuses_changes_nothing():
     follower = topomap.follow(4)
     with pytest.raises(ValueError, match="no step as yet"):
         follower.status()
-    with pytest.raises(ValueError, match="step 0: a turn"):
+    with pytest.raises(ValueError, match="step 0: there is a turn"):
         follower.step([0, 1], 1)
     follower.step([0, 1])
     before = follower.record

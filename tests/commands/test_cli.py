@@ -10,7 +10,7 @@ import time
 import pytest
 from conftest import BIN, ROOT, answers
 from topomap.cli import SUBCOMMANDS
-from topomap.model.experience import read
+from topomap.model.facts import read
 from topomap.model.vocabulary import PARTS
 from topomap.runtime import formats
 
@@ -221,7 +221,7 @@ BAD = {
     "slots(4). view(0,0). view(1,0).": "step 1: it has no turn",
     "slots(4). view(0,0). turn(1,0).": "step 1: no view",
     "slots(4). view(0,0). turn(1,1). view(1,0).": "step 1: turn 1: no gateway there",
-    "slots(4). view(0,0). turn(0,0).": "step 0: a turn",
+    "slots(4). view(0,0). turn(0,0).": "step 0: there is a turn",
     "slots(4). view(0,0). turn(2,0). view(2,0).": "step 1: no turn",
     "slots(4). view(0,0;0,1). turn(1,0;1,1). view(1,0).": "not a ground fact",
     "slots(4). view(0,0). view(0,1). turn(1,0). turn(1,1). view(1,0).": "step 1: more than one",
@@ -234,10 +234,10 @@ BAD = {
     "slots(4). view(0,0..1).": "not a ground fact",
     "slots(4). view(0,0)": "does not end",
     "slots(4). view(0,0). %* on %* and *% on": "a comment does not end",
-    "slots(99999999999). view(0,0).": "is no plain fact",
-    "slots(4). view(0,0). landmark(0,f(4294967296)).": "is no plain fact",
-    "slots(4). view(0,65536*65536).": "is no plain fact, clingo has view(0,0)",
-    "slots(4). view(0,0x0).": "is no plain fact",
+    "slots(99999999999). view(0,0).": "is not a plain fact",
+    "slots(4). view(0,0). landmark(0,f(4294967296)).": "is not a plain fact",
+    "slots(4). view(0,65536*65536).": "is not a plain fact: clingo reads it as view(0,0)",
+    "slots(4). view(0,0x0).": "is not a plain fact",
     "slots(2000000000). view(0,0).": "K must be even, from 2 to",
     '#include "/etc/passwd".': "not a ground fact",
     "#script (python) print(1) #end.": "not a ground fact",
@@ -317,6 +317,39 @@ def test_bad_usage_is_one_line(inside, arguments):
     assert (done.returncode, done.stdout) == (2, "")
     assert done.stderr.count("\n") == 1
     assert done.stderr.startswith("topomap")
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["sovle", GRID], "topomap: no such command: 'sovle' (did you mean solve? see"),
+        (["solve", GRID, "--optimall"], "topomap solve: unrecognized arguments: --optimall (see"),
+    ],
+)
+def test_bad_usage_says_what_may_be_meant(inside, words, said):
+    done = inside(*words)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert done.stderr.startswith(said)
+
+
+def test_an_input_is_not_overwritten(inside, tmp_path):
+    log, other = tmp_path / "log.lp", tmp_path / "other.lp"
+    text = (ROOT / GRID).read_text()
+    log.write_text(text)
+    other.symlink_to(log)
+    for call in (
+        ["solve", log, "-o", log],
+        ["solve", log, "-o", other],
+        ["count", log, "-o", tmp_path / "." / "log.lp"],
+        ["solve", GRID, log, "--json", "-o", log],
+        ["check", GRID, log, "-o", log],
+        ["solve", GRID, "--truth", log, "-o", log],
+        ["report", log, "-o", log],
+    ):
+        done = inside(*call)
+        assert (done.returncode, done.stdout, done.stderr.count("\n")) == (2, "", 1), call
+        assert done.stderr.endswith(": it is to be read, and cannot be written, too\n")
+        assert log.read_text() == text
 
 
 @pytest.mark.parametrize("command", ["", "generate", "solve", "count", "table", "family"])

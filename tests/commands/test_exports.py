@@ -25,7 +25,8 @@ from topomap.documents.answers import map_json
 from topomap.documents.verdicts import verdicts
 from topomap.drawing.scenes import Scene
 from topomap.exchange import exports, imports
-from topomap.model.experience import Experience, explore, read
+from topomap.model.experience import Experience, observe
+from topomap.model.facts import read
 from topomap.model.query import Query
 from topomap.model.topology import gid
 from topomap.runtime.errors import InputError
@@ -112,7 +113,7 @@ def real(draw, steps):
     for _ in range(steps):
         route.append(draw.choice(sorted(world.stars[place])))
         place, _ = world.links[place, route[-1]]
-    seen, at = explore(world, start, route)
+    seen, at = observe(world, start, route)
     seen = signed(seen, draw)
     return seen, Scene(seen.map_of(at), at, "made.lp")
 
@@ -412,10 +413,16 @@ FOREIGN = {
     "odd slots": (spoilt(lambda g: g["graph"].update(slots=5)), "even number"),
     "slots of text": (spoilt(lambda g: g["graph"].update(slots="4")), "slots: not what"),
     "another genus": (spoilt(lambda g: g["graph"].update(genus=3)), "do not fit"),
-    "a gateway less": (spoilt(lambda g: g["nodes"][4]["gateways"].pop()), "not there, or two"),
+    "a gateway less": (
+        spoilt(lambda g: g["nodes"][4]["gateways"].pop()),
+        "has two links, or does not exist",
+    ),
     "no gateways": (spoilt(lambda g: g["nodes"][0].pop("gateways")), "not as solve --json"),
     "a link less": (spoilt(lambda g: g["edges"].pop()), "links that are not there"),
-    "a link twice": (spoilt(lambda g: g["edges"].append({**g["edges"][0], "key": 99})), "or two"),
+    "a link twice": (
+        spoilt(lambda g: g["edges"].append({**g["edges"][0], "key": 99})),
+        "two links",
+    ),
     "other ends": (spoilt(lambda g: g["edges"][0].update(source=4)), "do not fit"),
     "other steps": (spoilt(lambda g: g["edges"][0].update(steps=[9])), "do not fit"),
     "a list of text": (spoilt(lambda g: g["edges"][0].update(ends="[")), "ends is not a list"),
@@ -515,14 +522,14 @@ def document(change=lambda document, entry: None):
 def test_parts_of_maps_that_are_there_already_are_refused(tmp_path, part):
     done = asked_of_maps(tmp_path, document(), *part)
     assert (done.returncode, done.stdout, done.stderr.count("\n")) == (2, "", 1)
-    assert "maps, and no instance" in done.stderr
+    assert "these are maps" in done.stderr
     assert asked_of_maps(tmp_path, document(), "--timeout", "9").returncode == 0
 
 
 @pytest.mark.parametrize(
     ("change", "title"),
     [
-        (lambda made, _: None, "the only map, optimal"),
+        (lambda made, _: None, "the only optimal map"),
         (lambda made, _: made.update(complete=False), "map 1 of 1 found, optimal"),
         (lambda made, _: made.pop("complete"), "map 1 of 1 found, optimal"),
         (

@@ -14,7 +14,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from oracles.brute_force import certain
 from oracles.worlds import marks, random_experience
-from topomap.model.experience import explore, parse, read
+from topomap.model.experience import observe
+from topomap.model.facts import parse, read
 from topomap.model.query import Query
 from topomap.questions.lines import decoded
 from topomap.questions.records import Record
@@ -143,7 +144,7 @@ def settled_by_a_marker():
     for turn in [0, 1, 1, 1]:
         route.append((slot + turn) % 4)
         place, slot = made.map.links[place, route[-1]]
-    return explore(made.map, ((0, 0), EAST), route, drops=[16])[0]
+    return observe(made.map, ((0, 0), EAST), route, drops=[16])[0]
 
 
 @pytest.mark.long
@@ -213,7 +214,7 @@ BAD = [
     ("marker(1).", "step 1: the marker is seen, but lies nowhere"),
     ("pick(1). drop(1).", "step 1: the marker is taken up, but lies nowhere"),
     ("drop(0). turn(2,0). view(2,0). drop(2).", "step 0: it is 1 or 2 now"),
-    ("drop(1). turn(2,0). view(2,0). drop(2).", "step 2: the marker is put down, but is out"),
+    ("drop(1). turn(2,0). view(2,0). drop(2).", "step 2: the marker is put down, but lies"),
     ("drop(1,0).", "drop(1,0): drop has 1 argument, drop(T)"),
     ("pick(a).", "pick(a): a step or a slot is a whole number"),
     ('{"turn": 0, "view": [0], "drop": 1}', "drop: true or false is wanted"),
@@ -223,7 +224,7 @@ BAD = [
     ("[1]", "a JSON object is wanted"),
     ('{"turn": 0}', "view is missing"),
     ('{"view": [0]}', "turn is missing"),
-    ('{"turn": 0, "view": [2]}', "step 2: the view lacks slot 0, the gateway stood at"),
+    ('{"turn": 0, "view": [2]}', "step 2: the view lacks slot 0, the gateway where the agent"),
     (
         '{"turn": 0, "view": [0], "sound": 1}',
         '"sound": not one of drop, landmarks, marker, pick, turn, view',

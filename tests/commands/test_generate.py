@@ -6,7 +6,7 @@ import random
 import networkx as nx
 import pytest
 from conftest import ROOT, SHARED, answers, run
-from topomap.model.experience import parse
+from topomap.model.facts import parse
 from topomap.runtime.errors import InputError
 from topomap.worlds.environment import grid, lattice, maze
 from topomap.worlds.instance import instance

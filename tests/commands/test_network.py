@@ -5,7 +5,7 @@ import os
 import networkx as nx
 import pytest
 from conftest import SHARED, run
-from topomap.model.experience import parse
+from topomap.model.facts import parse
 from topomap.runtime.errors import InputError
 from topomap.worlds.environment import grid
 from topomap.worlds.network import load

@@ -16,7 +16,7 @@ from hypothesis import strategies as st
 from oracles.instance_faults import KINDS, corrupted, errors
 from test_cli import BAD
 from topomap import cli
-from topomap.model.experience import HINT, SIGNATURES, parse, read
+from topomap.model.facts import HINT, SIGNATURES, parse, read
 from topomap.runtime.errors import InputError, printable
 from topomap.worlds.environment import grid, lattice, maze
 from topomap.worlds.instance import instance
@@ -54,27 +54,27 @@ turn(2,2). view(2,0). view(2,2). landmark(2,lift).
     assert judged(one) == (0, ["valid: 1 step, 2 slots, 1 kind of view, 1 landmark"])
 
 
-MORE = "there may be more faults: what is missing can be told when every statement is a fact"
+MORE = "there may be more faults: what is missing can be told once every statement is a fact"
 FAULTS = {  # and all that is said of them
-    "": ["no facts in it"],
+    "": ["there are no facts in it"],
     "\n\nslots(4).\nslots(6). slots(8).\nview(0,0).": ["4: 3 facts slots(K); there must be one"],
     "slots(4).\nview(0,0).\nturn(1,1). view(1,0). view(1,4).\nturn(2,0). turn(2,4).\nview(2,1).": [
         f"3: step 1: turn 1: no gateway there after step 0{HINT}",
         "3: step 1: slot 4 is not in 0..3",
         "4: step 2: more than one turn",
         "4: step 2: slot 4 is not in 0..3",
-        f"5: step 2: the view lacks slot 0, the gateway stood at{HINT}",
+        f"5: step 2: the view lacks slot 0, the gateway where the agent stands{HINT}",
     ],
     "view(0,0).\n\nturn(2,0).\nview(2,0). landmark(4,a).\nturn(-1,0). turn(0,0).": [
         "no facts slots(K); there must be one",
         "5: step -1: steps are numbered from 0",
-        "5: step 0: a turn; steps with a turn begin at 1",
+        "5: step 0: there is a turn, but step 1 is the first with a turn",
         "3: step 1: no turn, but there are later steps",
         "4: step 4: it has no turn (the last one is 2)",
     ],
     "slots(5).\nview(0,7).\nturn(1,0).": [
         "1: slots(5): K must be even, from 2 to 1000000",
-        f"2: step 0: the view lacks slot 0, the gateway stood at{HINT}",
+        f"2: step 0: the view lacks slot 0, the gateway where the agent stands{HINT}",
         f"3: step 1: turn 0: no gateway there after step 0{HINT}",
         f"3: step 1: no view{HINT}",
     ],
@@ -169,7 +169,7 @@ def test_many_faults_are_cut_short(judged):
     assert len(lines) == 1001
     assert lines[999:] == [
         "1001: step 0: slot 1001 is not in 0..1",
-        "there may be more faults: only the first 1,000 are told",
+        "there may be more faults: only the first 1,000 are listed",
     ]
     status, lines = judged("slots(2). view(0,0).\n" + "\n".join(facts[:1000]))
     assert (status, len(lines)) == (2, 1000)
@@ -251,7 +251,7 @@ START = (
     "choose it, and turn(1) counts from it"
 )
 ALWAYS = f"every turn from step 2 is 0: the agent turns back at once everywhere; {BACK}"
-NEVER = "places that look like the one after this step are never left but by the way back, in 4 "
+NEVER = "places that look like the one after this step are always left by the way back, in 4 "
 
 
 def log(turns, views):

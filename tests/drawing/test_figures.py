@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from conftest import ROOT
 from topomap.cli import main
-from topomap.model.experience import read
+from topomap.model.facts import read
 from topomap.paper import figures
 from topomap.runtime.watch import Watch
 from topomap.worlds.environment import grid

@@ -25,7 +25,7 @@ from topomap.drawing import shapes, svg
 from topomap.drawing.agreement import Agreement
 from topomap.drawing.scenes import Scene
 from topomap.model import words
-from topomap.model.experience import parse, read
+from topomap.model.facts import parse, read
 from topomap.model.query import Query
 from topomap.page.exploration import Exploration
 from topomap.page.replay import SHOWN, fate, replay

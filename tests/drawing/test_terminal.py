@@ -17,7 +17,7 @@ from topomap.drawing import scenes
 from topomap.drawing.layout import layout, straight
 from topomap.drawing.scenes import Scene
 from topomap.drawing.terminal import ARROWS, ASCII, BRAILLE, DOTS, LETTERS, text
-from topomap.model.experience import explore
+from topomap.model.experience import observe
 from topomap.model.query import Query
 from topomap.model.topology import TopologicalMap
 from topomap.runtime.watch import Watch
@@ -40,7 +40,7 @@ def walk(world, steps, draw, start=None):
         slot = draw.choice([s for s in sorted(world.stars[place]) if (place, s) in world.links])
         route.append(slot)
         place, slot = world.links[place, slot]
-    seen, at = explore(world, begin, route)
+    seen, at = observe(world, begin, route)
     return Scene(seen.map_of(at), at, "made")
 
 
@@ -576,7 +576,7 @@ def test_a_map_of_clingo_is_the_only_one_given_if_clingo_gave_all(tmp_path, argu
 
 def first(file):
     """The first map of a file, as it is shown."""
-    found, fault = scenes.scenes_of(str(ROOT / GRID), Query(), Watch(), str(file))
+    found, fault, _ = scenes.scenes_of(str(ROOT / GRID), Query(), Watch(), str(file))
     assert fault is None
     return found[0]
 
@@ -599,7 +599,7 @@ def test_maps_of_clingo_are_not_shown_without_the_right_instance(inside, tmp_pat
     for call, fault in (
         ((file,), f"{file}: maps from clingo: the instance is wanted before them, "),
         ((PAPER, file), f"{file}: map 1: step "),
-        ((GRID, file, "--planar"), f"{file}: the maps are given: parts, bound, horizon"),
+        ((GRID, file, "--planar"), f"{file}: these are maps, so parts, bound and"),
         ((GRID, file, "--map", 5), f"{file}: it has 4 maps, there is no map 5"),
         ((file, file), f"{file}:1: the facts of an instance are wanted"),
         (("-", "-"), "-: standard input is the instance or the maps, not both"),

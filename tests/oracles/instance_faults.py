@@ -5,20 +5,20 @@ import re
 
 import clingo
 from conftest import ENCODINGS
-from topomap.model.experience import ARITY
+from topomap.model.facts import ARITY
 from topomap.runtime.limits import LARGEST
 
 from oracles.worlds import random_experience
 
 PROGRAM = (ENCODINGS / "input.lp").read_text()
 KINDS = {  # what topomap.model.experience says, and the error that says the same
-    r"no facts.*": "-1,no_slots",
+    r"(there are )?no facts.*": "-1,no_slots",
     r"\d+ facts slots.*": "-1,two_slots",
     r"slots\((?P<K>-?\d+)\): K must.*": r"-1,(odd|few|many)_slots\({K}\)",
     r"step (?P<T>-\d+): steps are numbered from 0": r"-1,no_step\({T}\)",
     r"step (?P<T>\d+): it has no turn .*": "{T},no_step",
     r"step (?P<T>\d+): no turn, .*": "{T},no_turn",
-    r"step 0: a turn; .*": "0,turn_at_start",
+    r"step 0: there is a turn, .*": "0,turn_at_start",
     r"step (?P<T>\d+): more than one turn": "{T},two_turns",
     r"step (?P<T>\d+): no view .*": "{T},no_view",
     r"step (?P<T>\d+): slot (?P<S>-?\d+) is not in .*": r"{T},slot\({S}\)",

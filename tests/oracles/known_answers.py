@@ -13,10 +13,10 @@ from itertools import combinations, product
 
 from conftest import ENCODINGS, PARTS, Truth
 from topomap.documents.check import STEP_RULES, by_definition, by_rules
-from topomap.model.experience import MARKER, Experience, explore
+from topomap.model.experience import MARKER, Experience, observe
 from topomap.model.topology import TopologicalMap
 from topomap.questions.standings import Standing
-from topomap.solver.solving import FORMS
+from topomap.solver.programs import FORMS
 from topomap.worlds.environment import EAST, WEST, grid, world
 from topomap.worlds.route import snake
 
@@ -507,7 +507,7 @@ def sizes() -> list[Query]:
     phases = [query for query in queries() if query.files[0].startswith("fast/phases/")]
     made = grid(5, 5)
     route = [EAST, WEST] * 2 + snake(made)
-    experience, truth = explore(made.map, ((0, 0), EAST), route)
+    experience, truth = observe(made.map, ((0, 0), EAST), route)
     found = phase_answers.drawn(random.Random(0), experience, truth, 1)
     known = phase_answers.text(fact for fact in found if fact[0] in ("new", "old"))
     pairs = "".join(f"{atom}. " for atom in phase_answers.Pairs(experience).shown())

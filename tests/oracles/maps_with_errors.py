@@ -3,7 +3,8 @@
 import random
 from collections.abc import Iterator
 
-from topomap.model.experience import MARKER, Experience, parse
+from topomap.model.experience import MARKER, Experience
+from topomap.model.facts import parse
 from topomap.model.query import Query
 from topomap.search import traversal
 

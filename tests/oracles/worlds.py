@@ -4,7 +4,7 @@ something that is easily got wrong, and random ones."""
 import random
 from dataclasses import replace
 
-from topomap.model.experience import MARKER, Experience, explore
+from topomap.model.experience import MARKER, Experience, observe
 from topomap.model.topology import TopologicalMap
 from topomap.worlds.environment import grid, world
 
@@ -53,7 +53,7 @@ def random_experience(draw: random.Random, steps: int, marker: bool = False) -> 
             ahead = draw.choice(sorted(made.stars[place]))
         route.append(ahead)
         place, slot = made.links[place, ahead]
-    return explore(made, start, route, *(with_marker(route) if marker else ()))[0]
+    return observe(made, start, route, *(with_marker(route) if marker else ()))[0]
 
 
 def with_marker(route: list[int]) -> list[list[int]]:
@@ -73,7 +73,7 @@ def walked(slots: int, ways: str, start: str, route: str, signs: str = "") -> Ex
     landmarks = {text[0]: frozenset("ab"[len(text) - 1]) for text in signs.split()}
     made = replace(world(slots, links), landmarks=landmarks)
     leaving = map(int, route.split())
-    return explore(made, (start[0], int(start[1:])), leaving)[0]
+    return observe(made, (start[0], int(start[1:])), leaving)[0]
 
 
 def of_grid(
@@ -82,7 +82,7 @@ def of_grid(
     """A walk by compass letters through a grid, from gateway (row, column, slot)."""
     *place, slot = start
     made = grid(rows, columns, kind).map
-    return explore(made, (tuple(place), slot), map("NESW".index, route))[0]
+    return observe(made, (tuple(place), slot), map("NESW".index, route))[0]
 
 
 LINE = "a1 b0  b1 c0  c1 d0"

@@ -18,7 +18,7 @@ import pytest
 from conftest import BIN, COLUMNS, ROOT, run
 from oracles.known_answers import CORRIDOR
 from topomap.runtime.watch import Stopped, Watch
-from topomap.solver import solving
+from topomap.solver import programs, solving
 
 OLD = "old\n"
 QUIET = Watch()
@@ -389,19 +389,19 @@ def test_a_thread_that_ends_unheard_is_not_waited_for(monkeypatch):
     def end(*_, **__):
         raise SystemExit  # as MemoryError does where not even that can be told
 
-    monkeypatch.setattr(solving.Program, "solve", end)
+    monkeypatch.setattr(programs.Program, "solve", end)
     with pytest.raises(Stopped, match="out of memory"):
         list(solving.hypotheses(CORRIDOR, solving.Query(), QUIET))
 
 
 def test_queries_one_after_another_are_solved_in_one_thread(monkeypatch):
-    threads, solve = set(), solving.Program.solve
+    threads, solve = set(), programs.Program.solve
 
     def note(*arguments, **named):
         threads.add(threading.get_ident())
         solve(*arguments, **named)
 
-    monkeypatch.setattr(solving.Program, "solve", note)
+    monkeypatch.setattr(programs.Program, "solve", note)
     for horizon in range(4):
         assert list(solving.hypotheses(CORRIDOR, solving.Query(horizon=horizon), QUIET))
     assert len(threads) == 1

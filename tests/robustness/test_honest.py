@@ -13,7 +13,7 @@ import pytest
 from conftest import ROOT
 from topomap.documents.maps import KINDS, document
 from topomap.drawing import scenes
-from topomap.model.experience import read
+from topomap.model.facts import read
 from topomap.model.found import UNPROVED, Found
 from topomap.model.query import Query
 from topomap.questions import robot
@@ -272,7 +272,7 @@ def test_one_of_two_maps_is_not_said_to_be_the_only_one(inside, tmp_path):
         file.write_text(json.dumps({**two, **change}))
         assert "map 1 of 1 found" in inside("show", file).stdout
     file.write_text(json.dumps({**two, "maps": two["maps"][:1], "count": 1}))
-    assert "the only map, optimal" in inside("show", file).stdout
+    assert "the only optimal map" in inside("show", file).stdout
     graph = tmp_path / "map.graphml"
     assert not inside("export", whole, "--map", 2, "--format", "graphml", "-o", graph).returncode
     assert not inside("import", graph, "-o", file).returncode

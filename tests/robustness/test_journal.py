@@ -10,12 +10,13 @@ from functools import cache
 import pytest
 from conftest import BIN, ROOT, TRIED, run
 from topomap.cli import main
-from topomap.model.experience import read
+from topomap.model.facts import read
 from topomap.model.query import Query
 from topomap.paper import beyond, statistics
 from topomap.runtime.journal import Journal
 from topomap.runtime.watch import Watch
 from topomap.search import traversal
+from topomap.solver import solving
 from topomap.solver.share import ALONE
 
 GRID = str(ROOT / "instances/grid-3x3-snake.lp")

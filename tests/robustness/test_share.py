@@ -18,7 +18,7 @@ from conftest import BIN, COLUMNS, ROOT
 from distributed import Client, LocalCluster
 from oracles.worlds import random_experience
 from topomap.cli import main
-from topomap.model.experience import read
+from topomap.model.facts import read
 from topomap.model.query import Query
 from topomap.model.vocabulary import PARTS
 from topomap.paper import statistics

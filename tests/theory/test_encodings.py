@@ -8,9 +8,9 @@ import pytest
 from clingo import ast
 from conftest import ENCODINGS, PARTS, ROOT, answers, run
 from oracles.rule_mutation import named_files, statements
-from topomap.model.experience import read
+from topomap.model.facts import read
 from topomap.model.vocabulary import PARTS as DRIVER_PARTS
-from topomap.solver.solving import FORMS
+from topomap.solver.programs import FORMS
 
 FACTS = read(ROOT / "instances/grid-3x3-snake.lp").facts()
 ALL = (*PARTS, "bound", "minimal", "genus")

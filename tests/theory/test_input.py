@@ -8,7 +8,7 @@ import pytest
 from conftest import ENCODINGS, ROOT, run
 from oracles.instance_faults import KINDS, corrupted, errors
 from oracles.maps_with_errors import INSTANCES
-from topomap.model.experience import parse
+from topomap.model.facts import parse
 from topomap.runtime.errors import InputError
 
 

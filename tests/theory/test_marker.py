@@ -7,12 +7,13 @@ from dataclasses import replace
 import pytest
 from conftest import ROOT, answers
 from topomap.documents.check import by_definition, by_rules
-from topomap.model.experience import Experience, explore, parse, read
+from topomap.model.experience import Experience, observe
+from topomap.model.facts import parse, read
 from topomap.model.query import Query
 from topomap.runtime.watch import Watch
 from topomap.search import traversal
 from topomap.solver import solving
-from topomap.solver.solving import FORMS
+from topomap.solver.programs import FORMS
 from topomap.worlds.environment import EAST, grid
 from topomap.worlds.route import snake
 
@@ -33,7 +34,7 @@ def continued(size: int, turns: list[int], drops=(), picks=()):
     for turn in turns:
         route.append((slot + turn) % 4)
         place, slot = made.map.links[place, route[-1]]
-    return explore(made.map, ((0, 0), EAST), route, drops, picks)
+    return observe(made.map, ((0, 0), EAST), route, drops, picks)
 
 
 def fates(experience: Experience, at) -> list[str | None]:
@@ -96,7 +97,7 @@ MOVES = [  # put down, taken up after these steps; and what then is: put down, t
 @pytest.mark.parametrize(("drops", "picks", "put", "taken", "seen"), MOVES)
 def test_what_an_exploration_sees_of_it(drops, picks, put, taken, seen):
     made = grid(2, 2).map
-    experience, truth = explore(made, ((0, 0), EAST), [1, 2, 3, 0], drops, picks)
+    experience, truth = observe(made, ((0, 0), EAST), [1, 2, 3, 0], drops, picks)
     assert (experience.drops, experience.picks, experience.markers) == (
         set(put),
         set(taken),
@@ -114,7 +115,7 @@ def test_what_an_exploration_sees_of_it(drops, picks, put, taken, seen):
 def test_what_may_be_left_out_says_nothing():
     """That it is seen where it is taken up, or where it was just put down."""
     made = grid(2, 2).map
-    experience, _ = explore(made, ((0, 0), EAST), [1, 2, 3, 0, 1], [0, 4], [4])
+    experience, _ = observe(made, ((0, 0), EAST), [1, 2, 3, 0, 1], [0, 4], [4])
     for markers in ({4}, {0, 4}, {0}, set()):
         same = parse(replace(experience, markers=frozenset(markers)).facts(), "made")
         for form in FORMS:
@@ -124,7 +125,7 @@ def test_what_may_be_left_out_says_nothing():
 def test_it_is_no_landmark():
     """Two visits of one place may differ in it, and the map knows nothing of it."""
     made = grid(2, 2).map
-    experience, truth = explore(made, ((0, 0), EAST), [1, 2, 3, 0, 1, 2, 3, 0], [0], [4])
+    experience, truth = observe(made, ((0, 0), EAST), [1, 2, 3, 0, 1, 2, 3, 0], [0], [4])
     assert truth in answers((), experience.facts())
     assert (experience.picks, experience.markers) == ({4}, {4})
     assert truth[4] == truth[8]
@@ -147,7 +148,7 @@ def test_the_commands_tell_of_it(topomap, instance, tmp_path):
     assert "the marker: put down at place 0 after step 0; taken up, put down at place 0" in shown
     made = grid(2, 2).map
     small, page = tmp_path / "small.lp", tmp_path / "page.html"
-    small.write_text(explore(made, ((0, 0), EAST), [1, 2, 3, 0, 1], [0, 4], [4])[0].facts())
+    small.write_text(observe(made, ((0, 0), EAST), [1, 2, 3, 0, 1], [0, 4], [4])[0].facts())
     assert topomap("report", small, "-o", page).returncode == 0
     text = page.read_text()
     assert '<th scope="col">Marker</th>' in text
@@ -171,7 +172,7 @@ def test_maps_that_clash_with_it_are_not_sound(topomap, instance, tmp_path):
 @pytest.mark.parametrize(
     ("facts", "fault"),
     [
-        ("drop(1). drop(2).", "step 2: the marker is put down, but is out already"),
+        ("drop(1). drop(2).", "step 2: the marker is put down, but lies somewhere already"),
         ("pick(1).", "step 1: the marker is taken up, but lies nowhere"),
         ("drop(0). pick(1). marker(2).", "step 2: the marker is seen, but lies nowhere"),
         ("drop(3).", "step 3: it has no turn (the last one is 2)"),

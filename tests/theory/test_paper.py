@@ -5,13 +5,13 @@ import re
 
 import pytest
 from conftest import COLUMNS, ROOT, Truth, answers, run
-from topomap.model.experience import read
+from topomap.model.facts import read
 from topomap.model.query import Query
 from topomap.paper import figure4
 from topomap.paper.statistics import tree
 from topomap.runtime.journal import Journal
 from topomap.runtime.watch import Watch
-from topomap.solver.solving import FORMS
+from topomap.solver.programs import FORMS
 
 IDS = [f"{c['environment']}{'-planar' * c['planarity']}" for c in COLUMNS]
 

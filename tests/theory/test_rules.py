@@ -9,7 +9,7 @@ from clintest.solver import Clingo
 from clintest.test import Assert
 from conftest import answers
 from oracles.known_answers import EXPERIENCES, seen
-from topomap.solver.solving import FORMS
+from topomap.solver.programs import FORMS
 
 in_every_form = pytest.mark.parametrize("form", FORMS)
 

@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from topomap.model import experience
+from topomap.model import facts
 from topomap.model.experience import Experience
 
 
@@ -23,4 +23,4 @@ def read(path: str | Path, noisy: bool = False) -> Experience:
         InputError: the file cannot be read or is no instance; the message is one line that names
             file, line, step and fault.
     """
-    return experience.read(path, noisy)
+    return facts.read(path, noisy)

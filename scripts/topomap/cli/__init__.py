@@ -5,10 +5,12 @@ for the solver; a test sees to that.
 """
 
 import argparse
+import difflib
 import importlib
 import sys
 from collections.abc import Sequence
 from functools import cache
+from pathlib import Path
 from typing import Any
 
 from topomap.cli.arguments import STATUS, Parser
@@ -73,10 +75,45 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 def parse(words: Sequence[str]) -> argparse.Namespace:
     """The arguments of a call. Raises InputError on bad usage."""
-    args = _parser(words[0] if words and words[0] in SUBCOMMANDS else None).parse_args(words)
+    first = words[0] if words else ""
+    if first and not first.startswith("-") and first not in SUBCOMMANDS:
+        near = difflib.get_close_matches(first, SUBCOMMANDS, 1)
+        hint = f"did you mean {near[0]}? " if near else ""
+        raise InputError(f"topomap: no such command: {first!r} ({hint}see topomap --help)")
+    parser = _parser(first if first in SUBCOMMANDS else None)
+    args, unknown = parser.parse_known_args(words)
+    if unknown:
+        command = f"topomap {args.command}"
+        said = f"unrecognized arguments: {' '.join(unknown)}"
+        raise InputError(f"{command}: {said} (see {command} --help)")
     if [] in vars(args).values():  # what Python 3.11 makes of --name=--
         raise InputError("topomap: -- is not a value (see topomap --help)")
+    _spare_inputs(args)
     return args
+
+
+def _spare_inputs(args: argparse.Namespace) -> None:
+    """Raise InputError if what is to be written is a file that is to be read: a log that was
+    written by hand is easily lost."""
+    told = vars(args)
+    inputs: list[Any] = []
+    for name in ("instance", "file", "given", "maps", "maps_from", "among", "check"):
+        value = told.get(name)
+        inputs += value if isinstance(value, list) else [value]
+    # What generate writes as the truth, others read.
+    truth = [told.get("truth")]
+    written = [told.get(name) for name in ("output", "proof", "log")]
+    for name in written + truth * (args.command == "generate"):
+        for other in inputs + truth * (args.command != "generate"):
+            if isinstance(name, str) and isinstance(other, str) and _same(name, other):
+                raise InputError(f"{name}: it is to be read, and cannot be written, too")
+
+
+def _same(one: str, other: str) -> bool:
+    try:
+        return Path(one).is_file() and Path(one).samefile(other)
+    except (OSError, ValueError):
+        return False
 
 
 def _module(name: str) -> Any:

@@ -13,7 +13,8 @@ from topomap.runtime.limits import LARGEST
 
 STATUS = """\
 exit status: 0 done; 1 the answer is no (the table differs, no map, an unsound map);
-2 bad input or usage; 3 partial (a limit, a time-out, no memory left); 130 interrupted"""
+2 bad input or usage; 3 partial (a limit or time limit was reached, or memory ran out);
+130 interrupted"""
 
 
 class Parser(argparse.ArgumentParser):
@@ -60,13 +61,13 @@ def add_start(add: Any, facing: str) -> None:
     add(
         "--start",
         metavar="PLACE",
-        help="first place, such as 0,2 (default: the smallest)",
+        help="place to start at, such as 0,2 (default: the smallest)",
     )
     add(
         "--facing",
         type=number(int, 0),
         metavar="SLOT",
-        help=f"gateway stood at first (default: {facing})",
+        help=f"gateway to stand at first (default: {facing})",
     )
     add(
         "--signs",
@@ -85,7 +86,7 @@ def add_environments(command: Parser, common: Parser, rest: str) -> Any:
         ("grid", "a grid of places, four slots, slot 0 north"),
         ("cylinder", "a grid whose rows are rings"),
         ("torus", "a grid whose rows and columns are rings"),
-        ("maze", "a connected grid thinned with the seed"),
+        ("maze", "a grid from which ways are taken away at random; it stays connected"),
         ("hexagons", "the corners of a sheet of hexagons, six slots"),
         ("triangles", "a triangular lattice, six slots"),
     ):
@@ -104,8 +105,8 @@ def add_environments(command: Parser, common: Parser, rest: str) -> Any:
                 help="share of the ways to take away (default: %(default)s)",
             )
     help = (
-        "a street or corridor network with coordinates: ways are straight lines between "
-        "their ends, and two-way; loops are left out"
+        "a street or corridor network with coordinates: each way is a straight line between "
+        "its ends, and can be gone both ways; loops are left out"
     )
     example = f"{name} network city.graphml --slots 4 --north 29 {rest}"
     sub = environment(kinds, "network", common, help, example)
@@ -163,8 +164,8 @@ def add_optimal(command: Parser) -> None:
     command.add_argument(
         "--optimal",
         action="store_true",
-        help="closed maps with consistent boundaries, fewest paths and places; "
-        "if there is none, the best so far: pending gateways allowed",
+        help="closed maps with consistent boundaries, the fewest paths, then the fewest places; "
+        "if there is none, the best so far, in which gateways may be pending",
     )
 
 
@@ -173,8 +174,8 @@ def add_encoding(command: Parser) -> None:
         "--encoding",
         choices=FORMS,
         default="fast",
-        help="which rules clingo is given: encodings/fast/, or those that state the theory "
-        "(default: %(default)s)",
+        help="which rules clingo gets: those of encodings/fast/, or the plain ones, which state "
+        "the theory (default: fast)",
     )
 
 
@@ -182,7 +183,7 @@ def add_resume(command: Parser) -> None:
     command.add_argument(
         "--resume",
         action="store_true",
-        help="go on where the last run with this output file was cut; it left FILE.part",
+        help="go on where the last run with this output file was cut short; it left FILE.part",
     )
 
 
@@ -197,9 +198,9 @@ def add_crew(command: Parser, but: str = "") -> None:
     group.add_argument(
         "--dask",
         metavar="ADDRESS",
-        help="share it out among the workers of a running Dask cluster, such as "
-        "tcp://127.0.0.1:8786; they need this version of topomap (and here the extra dask: "
-        "pip install '.[dask]' in its folder)",
+        help="share the work out among the workers of a running Dask cluster, such as "
+        "tcp://127.0.0.1:8786; they need the same version of topomap, and this computer needs the "
+        "extra dask: pip install '.[dask]' in the folder of topomap",
     )
 
 
@@ -209,15 +210,17 @@ def add_scene(command: Parser) -> None:
     add(
         "file",
         metavar="INSTANCE|MAPS.json",
-        help="an instance, of which the optimal maps are shown, or the best so far, with what "
-        "is asked for below; or maps, from topomap solve --json",
+        help="an instance, of which an optimal map is shown, or one of the best so far, with the "
+        "options below; or a file of maps, from topomap solve --json",
     )
     add(
         "given",
         nargs="?",
         metavar="MAPS.json",
-        help="the maps of that instance to show instead, from clingo --outf=2 or topomap solve "
-        "--json (- is standard input)",
+        help="a file of maps of that instance, to be shown instead, from clingo --outf=2 or "
+        "topomap solve --json (- is standard input)",
     )
-    add("--map", type=number(int, 1), metavar="N", help="the N-th of the maps (default: 1)")
-    add_asked(command, PRUNING, limit="stop the search for maps after S seconds; then draw")
+    add("--map", type=number(int, 1), metavar="N", help="take the N-th map (default: 1)")
+    add_asked(
+        command, PRUNING, limit="stop the search for maps after S seconds, and take what was found"
+    )

@@ -25,7 +25,7 @@ def add(group: Any) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Check the paper's equation (1) at every branching node of the planar tree."""
-    from topomap.model.experience import read
+    from topomap.model.facts import read
     from topomap.model.query import Query
     from topomap.runtime.watch import Run
     from topomap.search import branching, traversal

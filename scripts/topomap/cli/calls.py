@@ -25,7 +25,7 @@ def crew_of(args: argparse.Namespace) -> "Crew":
 
     shared = (args.jobs or 1) > 1 or args.dask
     if shared and (getattr(args, "optimal", False) or OPTIMIZING & set(parts_of(args))):
-        raise InputError("topomap solve: --jobs and --dask share out all maps, not the best ones")
+        raise InputError("topomap solve: --jobs and --dask are for all maps, not the best ones")
     return crew(args.jobs or 1, args.dask)
 
 

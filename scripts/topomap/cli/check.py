@@ -17,8 +17,8 @@ def add(group: Any) -> None:
     made = command(
         group,
         "check",
-        "check maps that anyone made, by encodings/check.lp and by a second checker "
-        "(a time limit ends it between two maps)",
+        "check maps, whoever made them, by encodings/check.lp and by a second checker "
+        "(a time limit ends the check between two maps)",
         """\
   topomap solve instances/grid-3x3-snake.lp --planar --json -o maps.json
   topomap check instances/grid-3x3-snake.lp maps.json --planar""",
@@ -27,9 +27,9 @@ def add(group: Any) -> None:
     made.add_argument(
         "maps",
         metavar="MAPS.json",
-        help="from topomap solve --json or clingo --outf=2; a map needs at, [[T,P,S], ...], "
-        "and what else it has is verified; of all the maps are verified the parts, bound, "
-        "horizon, kind, cost and count, not whether they are all that there are",
+        help="from topomap solve --json or clingo --outf=2; a map needs the key at, "
+        "[[T,P,S], ...], and its other keys are verified; so are the parts, bound, horizon, kind, "
+        "cost and count of the file, but not that there are no other maps",
     )
     made.add_argument(
         "--truth", metavar="FILE", help="the real map (from generate --truth), for the key real"
@@ -38,7 +38,8 @@ def add(group: Any) -> None:
         "--noise",
         type=number(int, 0),
         metavar="K",
-        help="a map may disbelieve K views (its key misread), and no more than it says itself",
+        help="a map may disbelieve up to K views, named in its key misread, and no more than its "
+        "file allows",
     )
     add_query(made, PROPERTIES, horizon=False)
 
@@ -47,7 +48,7 @@ def run(args: argparse.Namespace) -> int:
     """Check maps that anyone made, by rules and by definition."""
     from topomap.api.check import check
     from topomap.documents import maps
-    from topomap.model.experience import read
+    from topomap.model.facts import read
     from topomap.runtime.watch import heeding
 
     documents = maps.read_maps(args.maps)

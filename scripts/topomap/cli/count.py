@@ -32,7 +32,7 @@ def add(group: Any) -> None:
 def run(args: argparse.Namespace) -> int:
     """Count the search tree of an instance, by clingo."""
     from topomap.api.count import count
-    from topomap.model.experience import read
+    from topomap.model.facts import read
     from topomap.paper import statistics
     from topomap.runtime.watch import heeding
 

@@ -16,9 +16,9 @@ def add(group: Any) -> None:
     made = command(
         group,
         "explain",
-        "tell why a statement about the maps is impossible, or certain, or why there is no map: "
-        "reasons none of which can be spared. (Of all maps, not of the optimal ones: that "
-        "another map is better is no reason of this kind)",
+        "say why a statement about the maps is impossible, or certain, or why there is no map, by "
+        "reasons each of which is needed. (The statement is about all maps, not only the optimal "
+        "ones: that another map is better is not such a reason)",
         f"""\
   topomap explain instances/grid-3x3-snake.lp "same(3,12)"
   topomap explain instances/grid-4x4-snake.lp "not same(0,30)" --planar --bound 16
@@ -34,7 +34,7 @@ def add(group: Any) -> None:
 def run(args: argparse.Namespace) -> int:
     """Tell why a statement is so."""
     from topomap.api.explain import explain
-    from topomap.model.experience import read
+    from topomap.model.facts import read
     from topomap.runtime.watch import heeding
 
     experience = read(args.instance)

@@ -22,9 +22,9 @@ def add(group: Any) -> None:
     made = command(
         group,
         "explore",
-        "say where to go next: the shortest further walk that tells the maps apart, or leaves the "
-        "fewest in the worst case; if there is none, to a pending gateway; or the proof that no "
-        "walk ever tells them",
+        "say where to go next: by the shortest further walk that tells the maps apart, or leaves "
+        "the fewest of them in the worst case; if there is no such walk, by one to a pending "
+        "gateway; or prove that no walk can ever tell the maps apart",
         """\
   topomap explore instances/grid-4x4-snake.lp --bound 16
   topomap generate grid 4 4 --route snake --truth truth.json -o grid.lp
@@ -39,21 +39,29 @@ def add(group: Any) -> None:
         "--among",
         action="append",
         metavar="MAPS",
-        help="the maps that may be the real one: optimal (the best so far, where nothing is "
-        "closed), closed, perpendicular (and closed), or a file of maps of this instance; more "
-        "than once for all of them (default: optimal)",
+        help="the maps that may be the real one: optimal (the best so far, if none is optimal), "
+        "closed, perpendicular (and closed), or a file of maps of this instance; can be given "
+        "several times (default: optimal)",
     )
-    add("--marker", action="store_true", help="the agent carries a marker, to be dropped once")
+    add(
+        "--marker",
+        action="store_true",
+        help="the agent carries a marker, which it may put down once",
+    )
     add(
         "--steps",
         type=number(int, 1, 1000),
         default=LONGEST_WALK,
         metavar="N",
-        help="walks of at most N steps (default: %(default)s)",
+        help="look for walks of at most N steps (default: %(default)s)",
     )
-    add("--proof", metavar="FILE", help="write there why no walk tells maps apart, for --check")
+    add(
+        "--proof",
+        metavar="FILE",
+        help="write to FILE the proof that no walk tells maps apart, for --check",
+    )
     what = made.add_mutually_exclusive_group()
-    what.add_argument("--check", metavar="FILE", help="check the proofs that --proof wrote there")
+    what.add_argument("--check", metavar="FILE", help="check the proofs that --proof wrote to FILE")
     what.add_argument(
         "--facts", action="store_true", help="print the maps as facts for encodings/explore.lp"
     )
@@ -63,7 +71,7 @@ def add(group: Any) -> None:
 def run(args: argparse.Namespace) -> int:
     """Say where to go next."""
     from topomap.api.explore import OPTIMAL, candidates, explore
-    from topomap.model.experience import read
+    from topomap.model.facts import read
     from topomap.runtime.watch import heeding
 
     experience = read(args.instance)

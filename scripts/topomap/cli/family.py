@@ -19,7 +19,8 @@ def add(group: Any) -> None:
     made = command(
         group,
         "family",
-        "name the instances of a family file, and write the call of each where it changed",
+        "print the names of the instances of a family file, and write the arguments of each that "
+        "changed",
         "  topomap family instances/batch.txt -d build/instances",
     )
     made.add_argument("file", metavar="FAMILY")
@@ -28,7 +29,7 @@ def add(group: Any) -> None:
         "--directory",
         required=True,
         metavar="DIR",
-        help="folder for NAME.args; files of instances no longer listed go",
+        help="folder for NAME.args; files of instances that are no longer listed are removed",
     )
     made.add_argument("--json", action="store_true", help="print JSON")
 
@@ -54,7 +55,7 @@ def run(args: argparse.Namespace) -> int:
             raise InputError(f"{args.file}:{line}: {error}") from None
         if made.name in calls:
             raise InputError(
-                f"{args.file}:{line}: a second instance named {made.name}; --name can part them"
+                f"{args.file}:{line}: a second instance named {made.name}; give it another --name"
             )
         calls[made.name] = shlex.join(call) + "\n"
         if parsed.kind == "network":  # make sees by this line that the map was changed

@@ -18,7 +18,11 @@ def add(group: Any) -> None:
         "  topomap figures -d docs/figures\n  topomap figures figure1 figure5 -d .",
     )
     made.add_argument(
-        "figure", nargs="*", default=(), metavar="FIGURE", help="these only, as figure1"
+        "figure",
+        nargs="*",
+        default=(),
+        metavar="FIGURE",
+        help="draw only these figures, such as figure1",
     )
     made.add_argument(
         "-d", "--directory", required=True, metavar="DIR", help="folder for FIGURE.svg"
@@ -26,7 +30,7 @@ def add(group: Any) -> None:
     made.add_argument(
         "--instances",
         metavar="DIR",
-        help="where they are (default: those of topomap path instances)",
+        help="folder of the instances (default: that of topomap path instances)",
     )
 
 

@@ -21,8 +21,8 @@ def add(group: Any) -> None:
     made = command(
         group,
         "follow",
-        "follow an exploration as it happens: after each step the number of hypotheses, the best "
-        "maps, what has become certain, and what to do next",
+        "follow an exploration as it happens, and print after each step how many hypotheses there "
+        "are, the best maps, what has become certain, and what to do next",
         """\
   topomap follow walk.lp --planar
   topomap follow instances/grid-3x3-snake.lp --no-wait --json
@@ -34,7 +34,7 @@ lines: the facts of a step, as generate writes them: turn(1,0). view(1,0). view(
   steps back. Facts that a line adds to the last step amend it.
 
 what is certain: new(T), the place where the agent is after step T was not visited before;
-  same(T,U) and linked(T,S,U,R) as topomap ask --help has them. It stays certain.""",
+  same(T,U) and linked(T,S,U,R) as in topomap ask --help. What is certain stays certain.""",
     )
     add = made.add_argument
     add(
@@ -42,31 +42,35 @@ what is certain: new(T), the place where the agent is after step T was not visit
         nargs="?",
         default="-",
         metavar="FILE",
-        help="a file that grows, followed until Ctrl-C (default: standard input, to its end)",
+        help="a file that grows, read until Ctrl-C (default: standard input, to its end)",
     )
     add(
         "--log",
         metavar="FILE",
-        help="with standard input: write each line there before it is answered; if it has lines, "
-        "go on after them",
+        help="with standard input: write each line to FILE before it is answered; if FILE has "
+        "lines already, go on after them",
     )
     add("--planar", action="store_true", help=PARTS["planar"])
     add("--bound", type=number(int, 1), metavar="B", help="at most B places")
-    add("--marker", action="store_true", help="the agent carries a marker, for what to do next")
+    add(
+        "--marker",
+        action="store_true",
+        help="the agent carries a marker, which the next steps may use",
+    )
     add(
         "--count-limit",
         type=number(int, 1),
         default=MOST_COUNTED,
         metavar="N",
-        help="of more hypotheses say only that they are more (default: %(default)s)",
+        help="if there are more than N hypotheses, say only that (default: %(default)s)",
     )
-    add("--timeout", type=number(float, 0.001), metavar="S", help="at most S seconds a step")
+    add("--timeout", type=number(float, 0.001), metavar="S", help="at most S seconds for each step")
     add(
         "--keep-going",
         action="store_true",
-        help="tell of lines with a fault, and pass over them (status 0)",
+        help="report lines with a fault, and go on with the next line (status 0)",
     )
-    add("--no-wait", dest="wait", action="store_false", help="end at the end of the file")
+    add("--no-wait", dest="wait", action="store_false", help="stop at the end of the file")
     add("--json", action="store_true", help="a line of JSON for each step")
 
 

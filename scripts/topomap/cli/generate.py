@@ -35,11 +35,16 @@ def add(group: Any) -> None:
         required=True,
         metavar="ROUTE",
         help="snake; walk (random); tour (over every way); compass letters such as ESSENN "
-        "(4 slots; with 8, apart by commas: N,NE,E); or absolute slots: 0,3,1",
+        "(4 slots; with 8, separated by commas: N,NE,E); or absolute slots: 0,3,1",
     )
     add("--steps", type=number(int, 0, MOST_STEPS), metavar="N", help="cut the route after N steps")
-    add_start(add, "the one first left by")
-    add("--seed", type=number(int, 0), metavar="N", help="for walk, signs and maze (default: 0)")
+    add_start(add, "the one by which the route leaves")
+    add(
+        "--seed",
+        type=number(int, 0),
+        metavar="N",
+        help="seed for walk, signs and maze (default: 0)",
+    )
     add("--name", help="name of the instance (default: made from the arguments)")
     add("--truth", metavar="FILE", help="also write the true hypothesis, for solve --truth")
     add("--json", action="store_true", help="print a summary as JSON")

@@ -17,9 +17,9 @@ def add(group: Any) -> None:
     made = command(
         group,
         "report",
-        "tell all about explorations in one page to be opened in a browser: the log, how many "
-        "hypotheses, what was refused, the best maps, and a replay step by step; what is not "
-        "counted or drawn within --timeout (default: 60) says so",
+        "write one page about explorations, to be opened in a browser: the log, how many "
+        "hypotheses there are, what was refused, the best maps, and a replay step by step; the "
+        "page marks what could not be counted or drawn within --timeout (default: 60)",
         """\
   topomap report instances/grid-3x3-snake.lp -o report.html
   topomap report instances/grid-4x4-snake.lp --bound 16 --timeout 120 -o report.html""",
@@ -31,12 +31,12 @@ def add(group: Any) -> None:
         type=number(int, 0),
         default=6,
         metavar="N",
-        help="draw N of the best maps at most (default: %(default)s)",
+        help="draw at most N of the best maps (default: %(default)s)",
     )
     add(
         "--maps-from",
         metavar="MAPS.json",
-        help="tell of these maps instead of the best ones, from clingo --outf=2 or topomap solve "
+        help="show these maps instead of the best ones, from clingo --outf=2 or topomap solve "
         "--json (- is standard input)",
     )
     add("-o", "--output", metavar="FILE", help="file to write (default: stdout)")
@@ -46,7 +46,7 @@ def add(group: Any) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Write the page about the instances."""
-    from topomap.model.experience import read
+    from topomap.model.facts import read
     from topomap.model.query import Query
     from topomap.page.exploration import Exploration, given_maps
     from topomap.page.report import Asked, page

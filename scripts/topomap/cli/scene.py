@@ -23,13 +23,14 @@ def scene_of(args: argparse.Namespace) -> "tuple[Scene | None, int]":
     parts = frozenset(part for part in PRUNING if getattr(args, part))
     with heeding(args.timeout) as watch:
         query = Query(parts, args.bound, args.horizon)
-        found, fault = scenes_of(args.file, query, watch, args.given)
+        found, fault, searched = scenes_of(args.file, query, watch, args.given)
     number = args.map or 1
     source = args.file if args.given is None else args.given
     if fault:
-        say(f"{args.file}: partial: {fault}")
+        none = "no map found yet; " if searched else "no map in it; "
+        say(f"{source}: {'' if found else none}partial: {fault}")
     elif not found:
-        say(f"{args.file}: no map is consistent with it")
+        say(f"{source}: no map {'is consistent with it' if searched else 'in it'}")
     elif number > len(found):
         many = words.number(len(found), "map")
         raise InputError(f"{source}: it has {many}, there is no map {number}")

@@ -20,7 +20,7 @@ def add(group: Any) -> None:
     made = command(
         group,
         "search",
-        "search the tree of an exploration, as the paper does, without clingo",
+        "search the tree of an exploration without clingo, as the paper does",
         """\
   topomap search instances/grid-4x4-snake.lp --planar --bound 16
   topomap search instances/grid-4x4-snake.lp --order depth
@@ -31,15 +31,15 @@ def add(group: Any) -> None:
         "--order",
         choices=("breadth", "depth", "best"),
         default="breadth",
-        help="breadth: step by step, counts the whole tree; depth: the same in little memory; "
-        "best: by the optimality policy, until a closed map is found (default: %(default)s)",
+        help="breadth: count the whole tree step by step; depth: the same in little memory; best: "
+        "best map first, until a closed map is found (default: %(default)s)",
     )
     add_query(made, PRUNING)
 
 
 def run(args: argparse.Namespace) -> int:
     """Search the tree of an instance: count it, or find a closed map best-first."""
-    from topomap.model.experience import read
+    from topomap.model.facts import read
     from topomap.model.query import Query
     from topomap.paper import statistics
     from topomap.runtime.watch import Run

@@ -34,7 +34,7 @@ def add(group: Any) -> None:
         group,
         "simulate",
         "let a robot explore an environment that it does not know, until it has one closed "
-        "optimal map, and hold that against the truth",
+        "optimal map, and compare this map with the real one",
         """\
   topomap simulate grid 3 3
   topomap simulate maze 4 4 --seed 2 --signs 0.3 --perpendicular
@@ -44,20 +44,20 @@ def add(group: Any) -> None:
     common = Parser(add_help=False)
     add = common.add_argument
     add_start(add, "the smallest")
-    add("--seed", type=number(int, 0), metavar="N", help="for signs and maze (default: 0)")
+    add("--seed", type=number(int, 0), metavar="N", help="seed for signs and maze (default: 0)")
     add(
         "--steps",
         type=number(int, 0, MOST_STEPS),
         metavar="N",
-        help="walk N steps at most (default: 20 for each way)",
+        help="walk at most N steps (default: 20 for each way)",
     )
-    add("--marker", action="store_true", help="it carries a marker, and may put it down")
-    add("--instance", metavar="FILE", help="also write what it did and saw, as an instance")
+    add("--marker", action="store_true", help="the robot carries a marker, and may put it down")
+    add("--instance", metavar="FILE", help="also write what the robot did and saw, as an instance")
     add_asked(common, PRUNING, horizon=False)
     add("--json", action="store_true", help="write JSON")
     add("-o", "--output", metavar="FILE", help="file to write (default: stdout)")
     kinds = add_environments(made, common, "--signs 0.3")
-    help = "several of them, one a line of a file: the arguments of topomap simulate"
+    help = "several environments: each line of a file has the arguments of topomap simulate"
     listed = kinds.add_parser(
         "list",
         help=help,

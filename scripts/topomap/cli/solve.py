@@ -51,26 +51,26 @@ def add(group: Any) -> None:
         "--by",
         choices=("clingo", "search"),
         default="clingo",
-        help="which of the two ways gives the answer (default: %(default)s)",
+        help="how to find the maps: clingo, or the search in Python (default: %(default)s)",
     )
     add_query(made, PARTS)
     add_crew(made, "; not with --optimal, --minimal or --genus")
     add_encoding(made)
-    made.set_defaults(encoding=None)  # the plain one with --noise, else the fast one
+    made.set_defaults(encoding=None)  # settled when it is known whether there is --noise
     add_resume(made)
     made.add_argument(
         "--noise",
         type=number(int, 0),
         metavar="K",
-        help="allow up to K wrong views, as few as can be: gateways and landmarks missed or "
-        "imagined; by the plain encoding",
+        help="allow up to K views to be wrong, as few as possible: gateways and landmarks were "
+        "missed or imagined; this uses the plain encoding",
     )
 
 
 def run(args: argparse.Namespace) -> int:
     """Enumerate the maps of each instance."""
     from topomap.documents.maps import real_map
-    from topomap.model.experience import read
+    from topomap.model.facts import read
 
     _with_noise(args)
     inputs = []
@@ -144,8 +144,8 @@ def _solve_one(
 
 
 def _with_noise(args: argparse.Namespace) -> None:
-    """Settle the encoding. Raises InputError if misreadings are allowed and something is asked
-    for that does not go with them."""
+    """Choose the encoding. Raises InputError if misreadings are allowed and something is asked
+    for that cannot be combined with them."""
     if args.noise is None:
         args.encoding = args.encoding or "fast"
         return

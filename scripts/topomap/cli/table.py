@@ -19,14 +19,15 @@ def add(group: Any) -> None:
     made = command(
         group,
         "table",
-        "print the paper's Figure 4 beside ours, and write it as JSON",
+        "print the paper's Figure 4 beside our numbers, and write them as JSON",
         "  topomap table",
     )
     made.add_argument(
         "--jobs",
         type=number(int, 1),
         metavar="N",
-        help="columns, or with --beyond processes, at a time (default: one a processor)",
+        help="how many columns, or with --beyond processes, at a time (default: one for each "
+        "processor)",
     )
     made.add_argument("--json", action="store_true", help="print JSON instead of the table")
     made.add_argument(

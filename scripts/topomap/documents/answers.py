@@ -121,7 +121,7 @@ class Report:
             self.out.write("\n], " + json.dumps(tail)[1:] + "\n")
             return
         kind = "" if self.last.kind == UNPROVED else f"{self.last.kind} "
-        line = f"{self.count} {kind}map{'s' * (self.count != 1)}{' found' * bool(fault)}"
+        line = f"{self.count} {kind}{words.plural(self.count, 'map')}{' found' * bool(fault)}"
         if fault and not self.count:
             line = "no map found yet"
         if self.last.cost:

@@ -234,8 +234,10 @@ def _of_clingo(path: str, data: dict[str, Any]) -> Document:
             seen.add((at, misread))
     except (LookupError, TypeError, ValueError, AttributeError, RuntimeError):
         raise InputError(f"{path}: not what clingo --outf=2 writes") from None
+    # Where clingo was to list all answers within a bound, it does not speak of an optimum.
     least = min(costs, default=[])
-    worse = frozenset(number for number, cost in enumerate(costs) if cost != least)
+    listed = isinstance(models := data.get("Models"), dict) and "Optimum" not in models
+    worse = frozenset(n for n, cost in enumerate(costs) if cost != least and not listed)
     fault = _lacking(data, len(maps) - len(worse), again)
     return Document(path, maps, formats.ended(fault), True, worse)
 
@@ -289,7 +291,7 @@ def real_map(file: str, experience: Experience, horizon: int | None) -> Topologi
     """The real map of an experience, from a file that ``generate --truth`` wrote."""
     entries = [entry for document in read_maps(file, files.MOST_BYTES) for entry in document.maps]
     if len(entries) != 1:
-        raise InputError(f"{file}: {len(entries)} maps; the real map is one")
+        raise InputError(f"{file}: {len(entries)} maps, but the real map must be the only one")
     at = entries[0]["at"]
     if len(at) != experience.steps + 1:
         raise InputError(f"{file}: {len(at) - 1} steps, the instance has {experience.steps}")

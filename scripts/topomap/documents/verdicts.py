@@ -78,7 +78,7 @@ class Judged:
         line = f"{len(self.verdicts)} of {many} checked" if self.fault else many
         line += f", {len(self.unsound) or 'none'}{' of these' * bool(self.fault)} unsound"
         if self.short:
-            line += f"; {self.short} of part of the {self.steps} steps"
+            line += f"; {self.short} of them for only part of the {self.steps} steps"
         yield line + (f"; partial: {self.fault}" if self.fault else "")
 
 

@@ -9,7 +9,8 @@ from typing import Any
 
 from topomap.documents import maps
 from topomap.documents.check import STEP_RULES
-from topomap.model.experience import MOST_SLOTS, Experience, parse
+from topomap.model.experience import MOST_SLOTS, Experience
+from topomap.model.facts import parse
 from topomap.model.found import UNPROVED, Found
 from topomap.model.query import Query
 from topomap.model.topology import Gateway, TopologicalMap
@@ -28,10 +29,10 @@ MOST_PLACES = 1000  # in a picture
 class Scene:
     """A map, and the dstate after each step of the route in it, from step 0 (or none).
 
-    ``name`` says where it is from; ``number`` of ``many`` such maps, which are all if ``whole``;
-    ``kind`` what they are; if it is not known, they are all that were given. ``caption`` is a
-    title instead of these. ``marker`` says where the marker was put down, seen and taken up, if
-    it was.
+    ``name`` says where it is from. It is map ``number`` of ``many``, which are all if
+    ``whole``. ``kind`` says what these maps are; if it is empty, that is not known, and they are
+    those that were given. ``caption`` is a title instead of these. ``marker`` says where the marker
+    was put down, seen and taken up, if it was.
     """
 
     world: TopologicalMap
@@ -48,13 +49,18 @@ class Scene:
     def title(self) -> str:
         """What the map is, in two lines; an instance by the stem of its file."""
         world = self.world
+        kind = short(printable(self.kind), 60)
         which = f"map {self.number} of {self.many}"
         if not self.whole:
             which += " found"
         elif self.many == 1:
             which = "the only map"
-        if self.whole and not self.kind:
+        if self.whole and not kind:
             which += " given"
+        elif self.whole and self.many == 1:
+            which = _only(kind)
+        elif kind:
+            which += f", {kind}"
         genus = world.genus()
         counts = {
             "place": len(world.stars),
@@ -64,8 +70,7 @@ class Scene:
         sizes = [f"{count} {plural(count, noun)}" for noun, count in counts.items()]
         sizes.append("planar" if genus == 0 else f"genus {genus}")
         name = short(PurePath(printable(self.name)).stem, 100)
-        kind = short(printable(self.kind), 60)
-        title = self.caption or f"{f'{name}: ' * bool(name)}{which}{f', {kind}' * bool(kind)}"
+        title = self.caption or f"{f'{name}: ' * bool(name)}{which}"
         return f"{title}\n{', '.join(sizes)}"
 
     @property
@@ -81,18 +86,24 @@ class Scene:
         return found
 
 
+def _only(kind: str) -> str:
+    """The only map of a kind, in words."""
+    return f"the only map that is {kind}" if kind.startswith("best") else f"the only {kind} map"
+
+
 def scenes_of(
     path: str, query: Query, watch: Watch, given: str | None = None
-) -> tuple[list[Scene], str | None]:
-    """The maps of a file, and why they may not be all of them, if so.
+) -> tuple[list[Scene], str | None, bool]:
+    """The maps of a file; why they may not be all of them, if so; and whether they were searched
+    for here.
 
     Of an instance they are the optimal ones, or the best so far, that have the parts of the
     query, or with a file of maps ``given`` those in it; of a text of ``solve --json`` those in it.
-    Raises InputError, one line.
+    Of a file, there is a reason only where it has no map. Raises InputError, one line.
     """
     if given is not None:
         if query != Query(frozenset()):
-            raise InputError(f"{given}: the maps are given: parts, bound, horizon are of none")
+            raise InputError(f"{given}: these are maps, so parts, bound and horizon cannot be used")
         if path == given == "-":
             raise InputError("-: standard input is the instance or the maps, not both")
         documents = maps.of_instance(maps.read_maps(given), path)
@@ -100,15 +111,25 @@ def scenes_of(
             raise InputError(f"{given}: no maps of {path} in it")
         noisy = any("misread" in entry for document in documents for entry in document.maps)
         seen = parse(text(path), path, noisy)
-        return [scene for one in documents for scene in of_instance(seen, path, one)], None
+        found = [scene for one in documents for scene in of_instance(seen, path, one)]
+        return found, _missing(documents, found), False
     content = text(path, maps.MOST_BYTES)
     if content.lstrip()[:1] in ("{", "["):
         if query != Query(frozenset()):
-            raise InputError(f"{path}: maps, and no instance: parts, bound, horizon are of none")
-        return [
-            scene for document in maps.parse(content, path) for scene in of_document(document)
-        ], None
-    return best(parse(content, path), path, query, watch)
+            raise InputError(f"{path}: these are maps, so parts, bound and horizon cannot be used")
+        documents = maps.parse(content, path)
+        found = [scene for document in documents for scene in of_document(document)]
+        return found, _missing(documents, found), False
+    return *best(parse(content, path), path, query, watch), True
+
+
+def _missing(documents: Sequence[maps.Document], found: Sequence[Scene]) -> str | None:
+    """Why there is no map in documents, unless that is all that there is to find."""
+    if found:
+        return None
+    cut = [document for document in documents if not document.whole]
+    told = [str(document.claims["fault"]) for document in cut if document.claims.get("fault")]
+    return (told or ["it is not said to be complete"])[0] if cut else None
 
 
 def of_instance(seen: Experience, name: str, document: maps.Document) -> list[Scene]:
@@ -174,7 +195,7 @@ def of_document(document: maps.Document) -> list[Scene]:
     for number, entry in enumerate(document.maps, 1):
         where = f"{document.where}: map {number}"
         if slots is None or not {"places", "links"} <= set(entry):
-            raise InputError(f"{where}: slots, places and links are wanted, as solve --json writes")
+            raise InputError(f"{where}: slots, places and links are wanted, as in solve --json")
         world = world_of(slots, entry, where)
         if sorted(step for step, _, _ in entry["at"]) != list(range(len(entry["at"]))):
             raise InputError(f"{where}: the steps of at are not 0, 1, 2, ..., each once")
@@ -190,8 +211,8 @@ def of_document(document: maps.Document) -> list[Scene]:
 
 
 def world_of(slots: int, entry: dict[str, Any], where: str) -> TopologicalMap:
-    """The map that ``places`` and ``links`` describe. Raises InputError if it is none: if it is
-    in parts, a gateway has two links, or is not there."""
+    """The map that ``places`` and ``links`` describe. Raises InputError if that is no map: if
+    it is not connected, or a gateway has two links, or does not exist."""
     try:
         stars = {
             int(place["place"]): frozenset(int(slot) for slot in place["gateways"])
@@ -217,11 +238,13 @@ def world_of(slots: int, entry: dict[str, Any], where: str) -> TopologicalMap:
     times = Counter(ends)
     for place, slot in ends:
         if slot not in stars.get(place, ()) or times[place, slot] > 1:
-            raise InputError(f"{where}: link at place {place}, gateway {slot}: not there, or two")
+            raise InputError(
+                f"{where}: place {place}: gateway {slot} has two links, or does not exist"
+            )
     if any(not 0 <= slot < slots for star in stars.values() for slot in star):
         raise InputError(f"{where}: a gateway is not from 0 to {slots - 1}")
     graph = nx.Graph([(a[0], b[0]) for a, b in links.items()])
     graph.add_nodes_from(stars)
     if not nx.is_connected(graph):
-        raise InputError(f"{where}: the map is in parts")
+        raise InputError(f"{where}: the map is not connected")
     return TopologicalMap(slots, stars, links, landmarks)

@@ -1,7 +1,7 @@
 """All that is wrong with instances, and what looks like a mistake.
 
 Nothing is solved. The faults are those for which every command refuses an instance. Warnings are
-of instances that can be meant as they are, but seldom are.
+about instances that may be meant as they are, but seldom are.
 """
 
 from collections import defaultdict
@@ -10,12 +10,14 @@ from itertools import islice, pairwise
 from typing import Any
 
 from topomap.model import words
-from topomap.model.experience import Experience, Facts, Fault
+from topomap.model.experience import Experience
+from topomap.model.facts import Facts, Fault
 from topomap.runtime import files
 from topomap.runtime.errors import InputError
 
-MOST = 1000  # faults of a file that are told
-# So many turns back, each where there were other gateways, are strange, if there are no others:
+MOST = 1000  # faults of a file that are told in JSON
+SHOWN = 50  # the same in lines
+# So many turns back, each at a place with other gateways, are strange if all turns are back:
 ALWAYS = 3  # in the whole exploration
 OFTEN = 4  # at places that look alike
 START = (
@@ -42,9 +44,9 @@ def judged(path: str) -> dict[str, Any]:
         told["landmarks"] = len(frozenset().union(*seen.landmarks))
     more = None
     if len(faults) > MOST:
-        more = f"only the first {MOST:,} are told"
+        more = f"only the first {MOST:,} are listed"
     elif facts.unread:
-        more = "what is missing can be told when every statement is a fact"
+        more = "what is missing can be told once every statement is a fact"
     return told | {
         "faults": [_json(fault, "fault") for fault in faults[:MOST]],
         "more_faults": more,
@@ -64,8 +66,10 @@ def lines(file: dict[str, Any]) -> Iterator[str]:
         counts += [words.number(file["views"], "kind of view", "kinds of views")]
         counts += [words.number(file["landmarks"], "landmark")]
         yield f"{name}: valid: {', '.join(counts)}"
-    for fault in file["faults"]:
+    for fault in file["faults"][:SHOWN]:
         yield Fault(fault["fault"], fault["line"], fault["step"]).of(name)
+    if (left := len(file["faults"]) - SHOWN) > 0:
+        yield f"{name}: and {words.number(left, 'more fault')}: see --json"
     if more := file["more_faults"]:
         yield f"{name}: there may be more faults: {more}"
     for warning in file["warnings"]:
@@ -98,15 +102,15 @@ def strange(seen: Experience, facts: Facts) -> Iterator[Fault]:
         if len(steps) >= OFTEN and not any(seen.turns[step - 1] for step in steps):
             first = steps[0] - 1
             said = (
-                "places that look like the one after this step are never left but by the way back, "
+                "places that look like the one after this step are always left by the way back, "
                 f"in {len(steps)} visits, though they have other gateways; {straight}"
             )
             yield Fault(said, facts.steps[first], first)
 
 
 def _kind(seen: Experience, step: int) -> Any:
-    """What a place looks like, from whichever gateway it is come to: its landmarks, and how far
-    its gateways lie apart. Their order is left out, which makes warnings fewer, and none wrong."""
+    """What a place looks like, at whichever gateway the agent arrives: its landmarks, and how far
+    its gateways lie apart. Their order is left out: warnings are then fewer, but none is wrong."""
     view = sorted(seen.views[step])
     apart = [after - before for before, after in pairwise(view)]
     return tuple(sorted([*apart, seen.slots - sum(apart)])), seen.landmarks[step]

@@ -2,14 +2,14 @@
 nothing, so that help and a mistyped call need not wait until the solver is loaded."""
 
 PARTS = {
-    "planar": "links join gateways of one face",
-    "euler": "the same by |V| - |E| + faces = 2",
+    "planar": "planar: each link joins two gateways of one face",
+    "euler": "planar, by Euler's formula: places - links + faces = 2",
     "closed": "no gateway is pending",
-    "travelled": "every path holds two places or more",
-    "boundary": "no place is both left and right of a path",
-    "perpendicular": "paths meet once, no three make a triangle",
-    "genus": "least genus",
-    "minimal": "fewest paths, then fewest places",
+    "travelled": "every path has two places or more",
+    "boundary": "no place is both left and right of a path, or on it and beside it",
+    "perpendicular": "two paths meet at most once, and no three make a triangle",
+    "genus": "maps with the least genus",
+    "minimal": "maps with the fewest paths, then the fewest places",
 }
 OPTIMIZING = {"genus", "minimal"}
 PRUNING = ("planar", "perpendicular")  # what has them has had them after each step
@@ -34,15 +34,16 @@ FIGURES = {  # as query.lp has them
     "genus": "genus",
 }
 VOCABULARY = """\
-statements, T and U being steps, S and R slots clockwise of the gateway stood at then:
+statements; T and U are steps; S and R are slots, counted clockwise from the gateway where the
+agent stood after the step:
   same(T,U)         the agent was at one place after T and after U
   linked(T,S,U,R)   gateway S of where it was after T is joined to gateway R of
                     where it was after U
   path(T,S,U,R)     one path leads through these two gateways
   pending(T,S)      that gateway has no link
   at(T,P,S)         after T it is at gateway S of place P, as in the maps of solve
-  places < 12       a number of places, paths, links, pending gateways (pending), or
-                    the genus; compared by < <= = != >= >
+  places < 12       the number of places, paths, links or pending gateways (pending),
+                    or the genus, is compared by one of < <= = != >= >
   planar, closed, travelled, boundary, perpendicular
-                    what the parts of these names demand
-  not STATEMENT     it does not hold"""
+                    the map fulfils what the part of this name demands
+  not STATEMENT     the statement does not hold"""

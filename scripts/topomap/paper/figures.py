@@ -16,7 +16,8 @@ from matplotlib.ticker import MaxNLocator, NullFormatter
 from topomap.drawing import panel, scenes, sheet
 from topomap.drawing.mesh import Points
 from topomap.drawing.scenes import Scene
-from topomap.model.experience import Experience, read
+from topomap.model.experience import Experience
+from topomap.model.facts import read
 from topomap.model.query import Query
 from topomap.paper import figure4
 from topomap.runtime.watch import Stopped, Watch

@@ -18,7 +18,7 @@ from topomap.model.found import Found
 from topomap.model.query import Query
 from topomap.questions.statements import Statement
 from topomap.runtime.watch import Watch
-from topomap.solver.solving import Program, calls
+from topomap.solver.programs import Program, calls
 
 BUDGETS = ("1000", "30000", "umax")  # conflicts: what is hard to settle holds up nothing else
 Literal = tuple[str, bool]  # a term of a statement, and whether it holds

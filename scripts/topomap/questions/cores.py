@@ -11,7 +11,7 @@ from topomap.model.experience import DState
 from topomap.questions.reasons import FIRST, KINDS
 from topomap.runtime.status import INTERRUPT
 from topomap.runtime.watch import Stopped
-from topomap.solver.solving import Program
+from topomap.solver.programs import Program
 
 ORDERS = 12  # in which reasons are tried, at most
 CONFLICTS, CALLS = 3_000, 500  # of the solver, until no further order is tried

@@ -27,7 +27,7 @@ from topomap.questions.reasons import (
 from topomap.questions.statements import Statement
 from topomap.runtime.status import INTERRUPT
 from topomap.runtime.watch import Stopped, Watch
-from topomap.solver.solving import Program, calls, forget
+from topomap.solver.programs import Program, calls, forget
 
 LATE = {"closed", "travelled"}  # what a map may lack after a step and have after a later one
 LASTING = ("same", "at")  # relations of which later steps tell nothing new

@@ -21,7 +21,7 @@ from topomap.questions.standings import Prediction, Standing, facts, predict, sh
 from topomap.runtime.folders import ENCODINGS
 from topomap.runtime.limits import LONGEST_WALK
 from topomap.runtime.watch import Attempt, Watch
-from topomap.solver import solving
+from topomap.solver.programs import Program, in_thread
 
 LIMITS = ("steps", "effort", "maps")  # why a plan may not be the best one, but for lack of time
 MOST_CLASSES = 60  # that are told apart at once
@@ -76,7 +76,7 @@ class Plan:
     untold: tuple[Untold, ...]
 
 
-class _Call(solving.Program):
+class _Call(Program):
     """A program on facts about maps, to be solved in a thread of its own."""
 
     def __init__(self, file: str, facts: str, options: Sequence[str]):
@@ -102,7 +102,7 @@ class _Call(solving.Program):
             if not self._interrupted:
                 self.whole = bool(self.control.solve(on_model=take).exhausted)
 
-        return solving._in_thread(self, watch, work)
+        return in_thread(self, watch, work)
 
 
 def plan(

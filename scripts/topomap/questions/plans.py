@@ -48,7 +48,7 @@ class Planned:
         yield self.among.words()
         if made.turns:
             yield from _walk(self.among.experience, made)
-        yield _verdict(len(self.among.each), made, self.among.every)
+        yield _verdict(self.among.each[0].of, len(self.among.each), made, self.among.every)
         for pair in made.untold[:MOST_PAIRS]:
             yield f"maps {pair.one + 1} and {pair.other + 1}: {_why(pair)}"
         if len(made.untold) > MOST_PAIRS:
@@ -129,11 +129,11 @@ def _cell(one: Prediction | None) -> str:
     return ", ".join([words.short(seen, LONGEST), *signs, *["marker"] * one.marker])
 
 
-def _verdict(many: int, made: Plan, every: bool) -> str:
-    """What the walk is good for."""
+def _verdict(kind: str, many: int, made: Plan, every: bool) -> str:
+    """What the walk is good for; ``kind`` is that of the first map."""
     if made.kind == "settled":
         if every:
-            return "settled: the map is closed, and the only one"
+            return f"settled: the only map that is {kind}, and it is closed"
         return "the map is closed; whether it is the real one is open: others were not looked at"
     if made.kind == "bisimilar":
         which = "the maps" if every else "these maps"

@@ -11,7 +11,7 @@ from functools import cached_property
 
 from topomap.model.experience import DState, Experience
 from topomap.model.topology import gid
-from topomap.model.words import number
+from topomap.model.words import number, plural
 from topomap.runtime.errors import printable
 
 RULES = {
@@ -335,4 +335,4 @@ def _pairs(paths: Sequence[int]) -> list[tuple[int, int]]:
 
 def _named(noun: str, numbers: Sequence[int]) -> str:
     """Such as "steps 3 4 5"."""
-    return f"{noun}{'s' * (len(numbers) != 1)} {' '.join(map(str, numbers))}"
+    return f"{plural(len(numbers), noun)} {' '.join(map(str, numbers))}"

@@ -13,16 +13,8 @@ import clingo
 
 from topomap.documents.maps import is_number
 from topomap.model import words
-from topomap.model.experience import (
-    MARKER,
-    SIGNATURES,
-    cut_short,
-    ground_facts,
-    marker_fault,
-    marker_out,
-    misfit,
-    slots_fault,
-)
+from topomap.model.experience import MARKER, marker_fault, marker_out
+from topomap.model.facts import SIGNATURES, cut_short, ground_facts, misfit, slots_fault
 from topomap.runtime.errors import InputError
 
 KNOWN = {**SIGNATURES, "undo": "undo(N)"}  # of which undo is a line by itself
@@ -62,7 +54,7 @@ class Record:
         if not last.view:
             return f"step {step}: no view"
         if 0 not in last.view:
-            return f"step {step}: the view lacks slot 0, the gateway stood at"
+            return f"step {step}: the view lacks slot 0, the gateway where the agent stands"
         return None
 
     def whole(self) -> tuple[Step, ...]:
@@ -146,7 +138,7 @@ class Record:
                 raise LineFault(f"step {step}: slot {slot} is not in 0..{self.slots - 1}")
         if turn is not None:
             if step == 0:
-                raise LineFault("step 0: a turn; steps with a turn begin at 1")
+                raise LineFault("step 0: there is a turn, but step 1 is the first with a turn")
             if known.turn not in (None, turn):
                 raise LineFault(f"step {step}: more than one turn")
             if turn not in self.steps[step - 1].view:
@@ -204,7 +196,7 @@ class Record:
         if step and "turn" in data:
             record = record._seen(step, turn=data["turn"])
         elif "turn" in data:
-            raise LineFault("step 0: a turn; steps with a turn begin at 1")
+            raise LineFault("step 0: there is a turn, but step 1 is the first with a turn")
         for slot in view:
             record = record._seen(step, view=slot)
         for term in landmarks:

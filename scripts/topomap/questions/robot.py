@@ -12,7 +12,7 @@ from itertools import islice
 from typing import Any
 
 from topomap.model.experience import Experience
-from topomap.model.experience import explore as experienced
+from topomap.model.experience import observe as experienced
 from topomap.model.found import Found
 from topomap.model.query import Query
 from topomap.model.topology import Gateway, Place, TopologicalMap, label

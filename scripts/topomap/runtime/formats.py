@@ -30,8 +30,8 @@ def line(data: dict[str, Any], fault: str | None = None) -> str:
 
 
 def demand(where: object, data: Any) -> None:
-    """See to it that what was read has this format, or none said, as what people write by hand.
-    Raises InputError, one line that begins with ``where``."""
+    """Demand that what was read has this format, or names no format, as a file that was written
+    by hand may. Raises InputError, one line that begins with ``where``."""
     if isinstance(data, dict) and "format" in data:
         said = data["format"]
         if type(said) is not int or said != FORMAT:

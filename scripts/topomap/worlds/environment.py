@@ -167,7 +167,9 @@ def _link(links: dict[Gateway, Gateway], a: Gateway, b: Gateway) -> None:
     links[a], links[b] = b, a
 
 
-def environment(kind: str, rows: int, columns: int, thin: float = 0.3, seed: int = 0) -> Environment:
+def environment(
+    kind: str, rows: int, columns: int, thin: float = 0.3, seed: int = 0
+) -> Environment:
     """The world of a kind: ``grid``, ``cylinder``, ``torus``, ``maze`` (a share ``thin`` of its
     ways is taken away with the seed), ``hexagons`` or ``triangles``. Raises ValueError on others.
     """

@@ -9,7 +9,7 @@ import zlib
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from topomap.model.experience import DState, Experience, explore
+from topomap.model.experience import DState, Experience, observe
 from topomap.model.topology import Place, label
 from topomap.runtime.errors import InputError
 from topomap.worlds.environment import Environment, plain
@@ -107,7 +107,7 @@ def instance(
     if fault:
         header.append(f"the environment's own map breaks the path axiom: {fault}")
     header.append("made by: " + shlex.join(call))
-    return Instance(title, tuple(header), *explore(world, (first, facing), taken))
+    return Instance(title, tuple(header), *observe(world, (first, facing), taken))
 
 
 def _part(route: str, taken: int, steps: int | None) -> str:

@@ -1,0 +1,301 @@
+"""The facts of instance files: experiences are read from them, and their faults told.
+
+An instance file is data: ground facts ``slots/1``, ``view/2``, ``turn/2``, ``landmark/2``,
+``drop/1``, ``pick/1`` and ``marker/1`` (see ``encodings/topomap.lp``), and comments. Anything
+else is refused.
+"""
+
+import difflib
+import itertools
+import re
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import clingo
+
+from topomap.model.experience import MARKER, MOST_SLOTS, Experience, marker_fault, marker_out
+from topomap.runtime import files
+from topomap.runtime.errors import InputError
+
+DEEPEST = 100  # clingo's parser crashes on terms that are very deep
+SIGNATURES = {  # the facts of an instance
+    "slots": "slots(K)",
+    "view": "view(T,S)",
+    "turn": "turn(T,S)",
+    "landmark": "landmark(T,L)",
+    **{name: f"{name}(T)" for name in MARKER},
+}
+ARITY = {name: form.count(",") + 1 for name, form in SIGNATURES.items()}
+HINT = " (misread? solve --noise allows for that)"
+
+
+def read(path: str | Path, noisy: bool = False) -> Experience:
+    """The experience in an instance file; a ``noisy`` one may turn to gateways that were not
+    seen, and views may lack slot 0. Raises InputError, one line, on bad input: the first of
+    the faults that ``Facts.faults`` finds."""
+    return parse(files.text(path), str(path), noisy)
+
+
+def parse(text: str, source: str, noisy: bool = False) -> Experience:
+    """The experience in the text of an instance; ``source`` names it in errors."""
+    facts = Facts()
+    for fault in facts.faults(text, noisy):
+        raise InputError(fault.of(source))
+    return facts.experience()
+
+
+@dataclass(frozen=True)
+class Fault:
+    """What is wrong with an instance: ``said`` in words, the ``line`` that shows it (counted
+    from 1; None if no line does), and the ``step`` if it is of one. A fault that ``lacks``
+    something might go when a fact that could not be read is put right."""
+
+    said: str
+    line: int | None = None
+    step: int | None = None
+    lacks: bool = False
+
+    def of(self, source: str) -> str:
+        """The fault in one line: file, line, step and what is wrong."""
+        line = "" if self.line is None else f":{self.line}"
+        step = "" if self.step is None else f" step {self.step}:"
+        return f"{source}{line}:{step} {self.said}"
+
+
+@dataclass
+class Facts:
+    """The facts of an instance, each with the line in which it stands first.
+
+    ``views[t]``, ``turns[t]`` and ``landmarks[t]`` hold what is told of step t, ``marks`` the
+    steps of each name of MARKER, ``steps`` each step of which anything is told. ``unread`` is
+    the number of statements that are no facts of an instance.
+    """
+
+    slots: dict[int, int] = field(default_factory=dict)
+    views: dict[int, dict[int, int]] = field(default_factory=dict)
+    turns: dict[int, dict[int, int]] = field(default_factory=dict)
+    landmarks: dict[int, dict[str, int]] = field(default_factory=dict)
+    marks: dict[str, dict[int, int]] = field(default_factory=lambda: {name: {} for name in MARKER})
+    steps: dict[int, int] = field(default_factory=dict)
+    unread: int = 0
+
+    def faults(self, text: str, noisy: bool = False) -> Iterator[Fault]:
+        """Read a text, and tell all that is wrong with it: first each statement that is no fact,
+        then what is wrong with the facts together. What may be missing only because it stands
+        in such a statement is not told."""
+        yield from self._read(text)
+        yield from (fault for fault in self._checked(noisy) if not (fault.lacks and self.unread))
+
+    def _read(self, text: str) -> Iterator[Fault]:
+        if text.lstrip()[:1] in ("{", "["):
+            self.unread += 1
+            line = 1 + text[: -len(text.lstrip())].count("\n")
+            yield Fault("the facts of an instance are wanted, not JSON or a rule", line)
+            return
+        for line, fact in ground_facts(text):
+            if said := fact if isinstance(fact, str) else misfit(fact):
+                self.unread += 1
+                yield Fault(said, line)
+            elif isinstance(fact, clingo.Symbol):
+                self._add(line, fact)
+
+    def _add(self, line: int, fact: clingo.Symbol) -> None:
+        name, arguments = fact.name, fact.arguments
+        first = arguments[0].number
+        if name == "slots":
+            self.slots.setdefault(first, line)
+            return
+        self.steps.setdefault(first, line)
+        if name in MARKER:
+            self.marks[name].setdefault(first, line)
+        elif name == "landmark":
+            self.landmarks.setdefault(first, {}).setdefault(str(arguments[1]), line)
+        else:
+            told = self.views if name == "view" else self.turns
+            told.setdefault(first, {}).setdefault(arguments[1].number, line)
+
+    def _checked(self, noisy: bool) -> Iterator[Fault]:
+        """What is wrong with the facts together: with slots(K), then step by step."""
+        if not self.slots and not self.views and not self.turns:
+            yield Fault("there are no facts in it", lacks=True)
+            return
+        slots = None
+        if len(self.slots) != 1:
+            second = [*self.slots.values(), None][1] if self.slots else None
+            many = len(self.slots) or "no"
+            yield Fault(f"{many} facts slots(K); there must be one", second, lacks=not self.slots)
+        for number, line in self.slots.items():
+            if fault := slots_fault(number):
+                yield Fault(fault, line)
+            elif len(self.slots) == 1:
+                slots = number
+        last = max([0, *self.turns])
+        later = sorted({0, *(step for step in self.turns if step > 0)})
+        gaps = {step + 1: after for step, after in itertools.pairwise(later)}
+        out, whole = False, True  # whether the marker lies somewhere; whether that can be told
+        for step in sorted({0, *self.steps, *(gap for gap in gaps if gap not in self.turns)}):
+            if step < 0:
+                yield Fault("steps are numbered from 0", self.steps[step], step)
+                continue
+            turned = step == 0 or step in self.turns
+            if step > last:
+                said = f"it has no turn (the last one is {last})"
+                yield Fault(said, self.steps[step], step, lacks=True)
+            elif not turned:
+                line = self.steps.get(step) or self.steps[gaps[step]]
+                yield Fault("no turn, but there are later steps", line, step, lacks=True)
+            whole = whole and turned
+            yield from self._turn_faults(step, slots, noisy)
+            yield from self._view_faults(step, slots, noisy, turned)
+            marks = {name: self.marks[name][step] for name in MARKER if step in self.marks[name]}
+            if whole and marks:
+                if fault := marker_fault(marks, out):
+                    yield Fault(fault, min(marks.values()), step, lacks=True)
+                out = marker_out(marks, out)
+
+    def _turn_faults(self, step: int, slots: int | None, noisy: bool) -> Iterator[Fault]:
+        turns = self.turns.get(step, {})
+        if turns and step == 0:
+            line = min(turns.values())
+            yield Fault("there is a turn, but step 1 is the first with a turn", line, step)
+            return
+        if len(turns) > 1:
+            yield Fault("more than one turn", sorted(turns.values())[1], step)
+        for turn, line in turns.items():
+            if slots is not None and not 0 <= turn < slots:
+                yield Fault(f"slot {turn} is not in 0..{slots - 1}", line, step)
+            elif not noisy and step - 1 in self.views and turn not in self.views[step - 1]:
+                said = f"turn {turn}: no gateway there after step {step - 1}{HINT}"
+                yield Fault(said, line, step, lacks=True)
+
+    def _view_faults(
+        self, step: int, slots: int | None, noisy: bool, turned: bool
+    ) -> Iterator[Fault]:
+        view = self.views.get(step, {})
+        for slot, line in view.items():
+            if slots is not None and not 0 <= slot < slots:
+                yield Fault(f"slot {slot} is not in 0..{slots - 1}", line, step)
+        if noisy:
+            return
+        if not view and turned:
+            yield Fault(f"no view{HINT}", self.steps.get(step), step, lacks=True)
+        elif view and 0 not in view:
+            said = f"the view lacks slot 0, the gateway where the agent stands{HINT}"
+            yield Fault(said, min(view.values()), step, lacks=True)
+
+    def experience(self) -> Experience:
+        """The experience that the facts make, if they have no fault."""
+        (slots,) = self.slots
+        steps = range(max([0, *self.turns]) + 1)
+        return Experience(
+            slots,
+            tuple(frozenset(self.views.get(step, ())) for step in steps),
+            tuple(next(iter(self.turns[step])) for step in steps[1:]),
+            tuple(frozenset(self.landmarks.get(step, ())) for step in steps),
+            *(frozenset(self.marks[name]) for name in MARKER),
+        )
+
+
+def slots_fault(slots: int) -> str | None:
+    """What is wrong with a number of slots."""
+    if slots < 2 or slots % 2 or slots > MOST_SLOTS:
+        return f"slots({slots}): K must be even, from 2 to {MOST_SLOTS}"
+    return None
+
+
+def misfit(fact: clingo.Symbol, forms: Mapping[str, str] = SIGNATURES) -> str | None:
+    """Why a fact does not belong in an instance: it has none of the ``forms``, which are given
+    by name, or it has another term where a number is wanted."""
+    name, arguments = fact.name, fact.arguments
+    text = cut_short(str(fact))
+    known = {name: form.count(",") + 1 for name, form in forms.items()}
+    if not fact.positive or known.get(name) != len(arguments):
+        if fact.positive and name in known:
+            has = "1 argument" if known[name] == 1 else f"{known[name]} arguments"
+            return f"{text}: {name} has {has}, {forms[name]}"
+        near = difflib.get_close_matches(name[:20], known, 1)
+        if fact.positive and near:
+            meant = f"did you mean {near[0]}/{known[near[0]]}?"
+            return f"{text}: {name}/{len(arguments)} is not known; {meant}"
+        every = ", ".join(f"{name}/{arity}" for name, arity in known.items())
+        return f"{text} is not a fact over {every}"
+    numbers = arguments[:1] if name == "landmark" else arguments
+    if any(argument.type != clingo.SymbolType.Number for argument in numbers):
+        return f"{text}: a step or a slot is a whole number"
+    return None
+
+
+# Outside a block comment: its beginning, a line comment, the two stops of an interval, a
+# string, a full stop, or other text. Block comments are nested.
+_STRING = r'"(?:[^"\\\n]++|\\.)*+"'
+_TOKEN = re.compile(rf'%\*|%[^\n]*|\.\.|{_STRING}|\.|[^%".]+|"', re.DOTALL)
+_COMMENT = re.compile(r"%\*|\*%|[^%*]+|[%*]", re.DOTALL)
+_FACT = re.compile(r"-?[a-z]\w*\(.*\)", re.DOTALL)
+_SPACE = re.compile(rf"({_STRING})|\s+", re.DOTALL)
+_NO_STOP = re.compile(r"\)\s+[a-z]\w*\(")
+_BRACKET = re.compile(rf"{_STRING}|[(|)]", re.DOTALL)
+
+
+def ground_facts(text: str, line: int = 1) -> Iterator[tuple[int, clingo.Symbol | str]]:
+    """The ground facts of a text, each with the line it begins in; the first line is ``line``.
+    In the place of a statement that is not a ground fact there is a text that says what it is.
+    A script is not read, nor is what comes after it, because its text has no statements."""
+    fact: list[str] = []
+    begins = line
+    position = depth = 0
+    while match := (_COMMENT if depth else _TOKEN).match(text, position):
+        token, position = match[0], match.end()
+        if token == "%*":
+            depth += 1
+        elif depth:
+            depth -= token == "*%"
+        elif token == ".":
+            statement = "".join(fact).strip()
+            yield begins, _fact(statement)
+            if statement.startswith("#script"):
+                return
+            fact = []
+        elif not token.startswith("%") and (fact or token.strip()):
+            if not fact:
+                begins = line + token[: -len(token.lstrip())].count("\n")
+            fact.append(token)
+        line += token.count("\n")
+    if fact or depth:
+        yield begins, f"{_short(''.join(fact)) if fact else 'a comment'} does not end"
+
+
+def _fact(text: str) -> clingo.Symbol | str:
+    """The ground fact of a text, or why there is none."""
+    if not _FACT.fullmatch(text):
+        return f"{_short(text)} is not a ground fact"
+    if len(text) > DEEPEST and _depth(text) > DEEPEST:
+        return f"{_short(text)} is nested deeper than {DEEPEST}"
+    try:
+        symbol = clingo.parse_term(text, logger=lambda *_: None)
+    except (RuntimeError, UnicodeDecodeError):  # clingo's message may cut a letter in two
+        stop = " (is a full stop missing?)" if _NO_STOP.search(text) else ""
+        return f"{_short(text)} is not a ground fact{stop}"
+    # clingo computes, and wraps numbers that are too large, without a word.
+    if str(symbol) != _SPACE.sub(r"\1", text):
+        return f"{_short(text)} is not a plain fact: clingo reads it as {cut_short(str(symbol))}"
+    return symbol
+
+
+def _depth(text: str) -> int:
+    """How deep the brackets of a text are nested, or more."""
+    depth = deepest = 0
+    for bracket in _BRACKET.findall(text):
+        depth += (bracket in "(|") - (bracket == ")")
+        deepest = max(deepest, depth)
+    return deepest
+
+
+def _short(text: str) -> str:
+    return repr(cut_short(text))
+
+
+def cut_short(text: str) -> str:
+    """A text in one line for a message."""
+    line = " ".join(text[:1000].split())
+    return line if len(line) <= 40 else line[:37] + "..."

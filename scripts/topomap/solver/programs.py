@@ -1,0 +1,304 @@
+"""clingo's programs: made of the encodings, grounded and solved in a thread of their own.
+
+So a time limit and Ctrl-C end them at any moment, while they ground too, and what was found until
+then is kept.
+"""
+
+import _thread
+import contextlib
+import os
+import queue
+import threading
+import time
+import weakref
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from functools import partial
+from typing import Any, ClassVar, TypeVar
+
+import clingo
+
+from topomap.model.experience import Experience
+from topomap.model.found import Cube
+from topomap.model.query import Query
+from topomap.runtime.errors import InputError
+from topomap.runtime.folders import ENCODINGS
+from topomap.runtime.status import INTERRUPT
+from topomap.runtime.watch import MEMORY, Stopped, Watch
+from topomap.solver import phases
+
+FORMS = {"fast": ENCODINGS / "fast", "plain": ENCODINGS}
+Answer = TypeVar("Answer")
+AHEAD = 1000  # answers that wait to be taken, at most
+
+
+def control(
+    query: Query, facts: str, entry: Sequence[str] = ("topomap",), options: Sequence[str] = ()
+) -> clingo.Control:
+    """clingo with the encodings, the entry files first, and the facts, not yet grounded."""
+    arguments = ["0", *options]
+    if query.optimizes:
+        arguments.append("--opt-mode=optN")
+    files = [*entry, *sorted(query.parts)]
+    if query.places is not None:
+        files.append("bound")
+        arguments += ["-c", f"places={query.places}"]
+    if query.noise is not None:
+        files.append("noise")
+        arguments += ["-c", f"noise={query.noise}"]
+    if query.horizon is not None:
+        arguments += ["-c", f"horizon={query.horizon}"]
+    made = clingo.Control(arguments)
+    for path in (FORMS[query.encoding] / f"{file}.lp" for file in files):
+        if not path.is_file():
+            raise InputError(f"{path}: not found; topomap is not installed as a whole")
+        made.load(str(path))
+    made.add("base", [], facts)
+    return made
+
+
+class Program:
+    """A query's program, with more facts, grounded when it is first solved."""
+
+    def __init__(self, experience: Experience, query: Query, facts: str = ""):
+        self.asked = experience, query
+        self.facts = facts
+        self._phased = query.encoding == "fast" and phases.serve(experience, query)
+        how = phases.program(experience, query) if self._phased else ()
+        self.control = control(query, experience.facts() + facts, *how)
+        self._grounded = self._interrupted = False
+        self._solved = self.control  # now or next
+        self.say: Callable[[str], None] = lambda _: None
+
+    def solve(
+        self,
+        cube: Cube,
+        more: Sequence[tuple[clingo.Symbol, bool]] = (),
+        on_model: Callable[[clingo.Model], bool] | None = None,
+    ) -> clingo.SolveResult:
+        """Solve it, with the hypotheses that begin with a cube as the only ones."""
+        if not self._grounded:
+            if self._phased:
+                facts = phases.found(*self.asked, FORMS["fast"], self._heed, self.say)
+                self._heed(self.control)
+                self.say("")
+                self.control.add("base", [], facts)
+                if "rare(" in facts:
+                    self.control.configuration.solver.heuristic = "Domain"  # type: ignore[union-attr]
+            self.control.ground()
+            self._grounded = True
+        return self.control.solve([*_assumed(cube), *more], on_model=on_model)
+
+    def _heed(self, control: clingo.Control) -> None:
+        self._solved = control
+        if self._interrupted:
+            raise Stopped(INTERRUPT)
+
+    def interrupt(self) -> None:
+        """End the call of another thread, as soon as it has grounded."""
+        self._interrupted = True
+        self._solved.interrupt()
+
+    def keep(self) -> None:
+        """Have it at hand, with what it has learnt, if this thread asks for it again."""
+        if not self.asked[1].optimizes:
+            _last.program = self
+
+    def models(self) -> tuple[int, tuple[float, ...]]:
+        """How many answers the last call had; if the query minimises, best ones, and what
+        they cost."""
+        summary = self.control.statistics["summary"]
+        if not self.asked[1].optimizes:
+            return int(summary["models"]["enumerated"]), ()
+        return int(summary["models"]["optimal"]), tuple(summary["costs"])
+
+
+class _Last(threading.local):
+    """The program that each thread has kept."""
+
+    program: Program | None = None
+
+
+_last = _Last()
+
+
+def forget() -> None:
+    """Let go of the program that this thread has kept."""
+    _last.program = None
+
+
+def program_of(experience: Experience, query: Query, facts: str = "") -> Program:
+    """The program of a query: the one that was kept, or a new one."""
+    _prepare()
+    program, _last.program = _last.program, None
+    if program is None or (*program.asked, program.facts) != (experience, query, facts):
+        program = None  # its memory is free before there is another
+        try:
+            program = Program(experience, query, facts)
+        except MemoryError:
+            raise Stopped(MEMORY) from None
+    return program
+
+
+class _Worker:
+    """A thread that does one job after another. It is started while there is memory, and has
+    what it needs when there is none left: a threading.Thread that cannot begin is waited for
+    without end, and C++ aborts where it cannot report an error."""
+
+    idle: ClassVar[list["_Worker"]] = []
+
+    def __init__(self) -> None:
+        self._jobs: queue.SimpleQueue[tuple[Callable[[], None], threading.Event]]
+        self._jobs = queue.SimpleQueue()
+        life = _Life()
+        self._alive = weakref.ref(life)
+        _thread.start_new_thread(self._run, (life,))
+
+    @classmethod
+    def hire(cls) -> "_Worker":
+        """An idle one, or a new one. Raises Stopped if there is no room for it."""
+        try:
+            return cls.idle.pop()
+        except IndexError:
+            pass
+        try:
+            return cls()
+        except RuntimeError:
+            raise Stopped(MEMORY) from None
+
+    def do(self, job: Callable[[], None]) -> threading.Event:
+        """Begin with a job; the event is set when it is done."""
+        over = threading.Event()
+        self._jobs.put((job, over))
+        return over
+
+    def is_alive(self) -> bool:
+        return self._alive() is not None
+
+    def _run(self, _: object) -> None:
+        _prepare()
+        while True:
+            job, over = self._jobs.get()
+            job()
+            del job  # and what it holds
+            self.idle.append(self)
+            over.set()
+
+
+class _Life:
+    """What only a thread holds: when it is gone, so is the thread."""
+
+
+os.register_at_fork(after_in_child=_Worker.idle.clear)  # it has no threads but its own
+
+
+def in_thread(
+    program: Program, watch: Watch, work: Callable[[Callable[[Any], bool]], None]
+) -> Iterator[Any]:
+    """What ``work`` puts, in a thread of its own; what it puts last is False if it is to
+    end. Raises Stopped at the time limit, or out of memory."""
+    found: queue.SimpleQueue[Any] = queue.SimpleQueue()
+    stop = threading.Event()
+
+    def put(item: Any) -> bool:
+        while found.qsize() >= AHEAD and not stop.is_set():
+            time.sleep(0.01)
+        if not stop.is_set():
+            found.put(item)
+        return not stop.is_set()
+
+    def run() -> None:
+        try:
+            work(put)
+            put(StopIteration())
+        except Exception as error:  # raised again in the caller's thread
+            put(error)
+
+    program.say = watch.phase
+    worker = _Worker.hire()
+    over = worker.do(run)
+    ended = False
+    try:
+        while True:
+            try:
+                item = found.get(timeout=0.1)
+            except queue.Empty:
+                watch.tick()
+                if not worker.is_alive() and found.empty():  # it could not even say why
+                    raise Stopped(MEMORY) from None
+                continue
+            if isinstance(item, StopIteration):
+                ended = True
+                return
+            if isinstance(item, MemoryError):
+                raise Stopped(MEMORY)
+            if isinstance(item, Exception):
+                raise item
+            watch.tick()
+            yield item
+    finally:
+        stop.set()
+        if ended:
+            program.keep()
+        else:
+            program.interrupt()
+        over.wait(timeout=0.5)
+
+
+def calls(
+    experience: Experience,
+    query: Query,
+    facts: str,
+    watch: Watch,
+    work: Callable[[Program, Callable[[Any], bool]], None],
+) -> Iterator[Any]:
+    """What ``work`` puts, which solves a query's program with these facts as often as it likes.
+    Raises Stopped at the time limit, or out of memory."""
+    program = program_of(experience, query, facts)
+    return in_thread(program, watch, partial(work, program))
+
+
+def answers(
+    experience: Experience,
+    query: Query,
+    watch: Watch,
+    read: Callable[[clingo.Model], Answer | None],
+    cubes: Iterable[Cube] | None = None,
+) -> Iterator[Answer | None]:
+    """What ``read`` makes of each model, in the solver's order; a model of which it makes
+    None is passed over. With ``cubes``, the models that begin with the first of them, then
+    a None, and so on. Raises Stopped at the time limit, or out of memory."""
+    program = program_of(experience, query)
+
+    def work(put: Callable[[Any], bool]) -> None:
+        going = True
+
+        def take(model: clingo.Model) -> bool:
+            nonlocal going
+            watch.found += 1
+            answer = read(model)
+            if answer is not None:
+                going = put(answer)
+            return going
+
+        for cube in [()] if cubes is None else cubes:
+            program.solve(cube, on_model=take)
+            if cubes is not None:
+                going = going and put(None)
+            if not going:
+                break
+
+    return in_thread(program, watch, work)
+
+
+def _assumed(cube: Cube) -> list[tuple[clingo.Symbol, bool]]:
+    return [
+        (clingo.Function("at", [clingo.Number(number) for number in (step, *dstate)]), True)
+        for step, dstate in enumerate(cube)
+    ]
+
+
+def _prepare() -> None:
+    """Have C++ allocate what it needs to report an error in this thread: when it is out of
+    memory it cannot, and aborts."""
+    with contextlib.suppress(RuntimeError):
+        clingo.parse_term("", logger=lambda *_: None)
