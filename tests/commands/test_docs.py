@@ -138,6 +138,22 @@ def test_the_index_leads_to_each_page():
     assert len(PAGES) > 10
 
 
+def test_the_page_for_newcomers_names_what_is_there():
+    """Each file and folder, as it is called from the top, or in one of the folders within; and
+    each room of the package."""
+    page = (DOCS / "DEVELOPMENT.md").read_text()
+    package = ROOT / "scripts/topomap"
+    rooms = [path.parent for path in package.glob("*/__init__.py")]
+    near = [ROOT / name for name in ("", "tests", "tests/oracles", "encodings", "instances")]
+    named = set(re.findall(r"`([\w./-]+(?:/|\.(?:py|lp|toml|json|txt)))`", page))
+    assert len(named) > 50
+    for file in named:
+        places = [*near, package, *rooms]
+        assert "NAME" in file or any((place / file).exists() for place in places), file
+    assert rooms
+    assert {f"{room.name}/" for room in rooms} <= set(re.findall(r"\b\w+/", page))
+
+
 # The name topomap on PyPI is another project's. So what is installed here is a path: a folder,
 # or the file of a wheel.
 INSTALL = re.compile(r"\bpip3? install\s+(?:--?[\w-]+(?:=\S+)?\s+)*([^\s`-][^\s`]*)")
