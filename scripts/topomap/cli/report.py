@@ -6,6 +6,7 @@ from dataclasses import replace
 from typing import Any
 
 from topomap.cli.arguments import add_asked, command, number
+from topomap.cli.calls import parts_of
 from topomap.model.vocabulary import PRUNING
 from topomap.runtime.errors import InputError, say
 from topomap.runtime.limits import LARGEST
@@ -46,8 +47,8 @@ def add(group: Any) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Write the page about the instances."""
+    from topomap.api.parts import query_of
     from topomap.model.facts import read
-    from topomap.model.query import Query
     from topomap.page.exploration import Exploration, given_maps
     from topomap.page.report import Asked, page
     from topomap.runtime.extras import need
@@ -58,8 +59,7 @@ def run(args: argparse.Namespace) -> int:
     seen = [(path, read(path)) for path in args.instance]
     if len({path for path, _ in seen}) < len(seen):
         raise InputError("topomap report: an instance is named twice")
-    parts = frozenset(part for part in PRUNING if getattr(args, part))
-    query = Query(parts, args.bound, args.horizon)
+    query = query_of(parts_of(args, PRUNING), bound=args.bound, horizon=args.horizon)
     given = None
     if args.maps_from is not None:
         if len(seen) > 1:

@@ -3,6 +3,7 @@
 import argparse
 from typing import TYPE_CHECKING
 
+from topomap.cli.calls import parts_of
 from topomap.model.vocabulary import PRUNING
 from topomap.runtime.errors import InputError, say
 from topomap.runtime.status import exit_status
@@ -13,16 +14,15 @@ if TYPE_CHECKING:
 
 def scene_of(args: argparse.Namespace) -> "tuple[Scene | None, int]":
     """The map, and the exit status: partial, if it may not be the best."""
+    from topomap.api.parts import query_of
     from topomap.drawing.scenes import scenes_of
     from topomap.model import words
-    from topomap.model.query import Query
     from topomap.runtime.extras import need
     from topomap.runtime.watch import heeding
 
     need("draw", f"topomap {args.command}")
-    parts = frozenset(part for part in PRUNING if getattr(args, part))
+    query = query_of(parts_of(args, PRUNING), bound=args.bound, horizon=args.horizon)
     with heeding(args.timeout) as watch:
-        query = Query(parts, args.bound, args.horizon)
         found, fault, searched = scenes_of(args.file, query, watch, args.given)
     number = args.map or 1
     source = args.file if args.given is None else args.given
