@@ -416,7 +416,7 @@ def test_families(topomap, tmp_path):
     assert kept.stat().st_mtime_ns == before[kept]
     for text, fault in (
         ("grid 2 2", "--route"),
-        ("grid 2 2 --route E\n" * 2, "named grid-2x2-E; --name"),
+        ("grid 2 2 --route E\n" * 2, "named grid-2x2-E; give it another --name"),
     ):
         family.write_text(text)
         done = topomap("family", family, "-d", folder)

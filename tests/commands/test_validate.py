@@ -166,13 +166,24 @@ def test_many_faults_are_cut_short(judged):
     facts = [f"view(0,{slot})." for slot in range(2, 3000)]
     status, lines = judged("slots(2). view(0,0).\n" + "\n".join(facts))
     assert status == 2
-    assert len(lines) == 1001
-    assert lines[999:] == [
-        "1001: step 0: slot 1001 is not in 0..1",
+    assert len(lines) == 52
+    assert lines[49:] == [
+        "51: step 0: slot 51 is not in 0..1",
+        "and 950 more faults: see --json",
         "there may be more faults: only the first 1,000 are listed",
     ]
     status, lines = judged("slots(2). view(0,0).\n" + "\n".join(facts[:1000]))
-    assert (status, len(lines)) == (2, 1000)
+    assert (status, len(lines)) == (2, 51)
+    status, lines = judged("slots(2). view(0,0).\n" + "\n".join(facts[:50]))
+    assert (status, len(lines)) == (2, 50)
+
+
+def test_json_has_more_faults_than_lines(inside, tmp_path):
+    file = tmp_path / "bad.lp"
+    file.write_text("slots(2). view(0,0).\n" + "".join(f"view(0,{n}).\n" for n in range(2, 3000)))
+    (told,) = json.loads(inside("validate", file, "--json").stdout)["files"]
+    assert len(told["faults"]) == 1000
+    assert told["more_faults"] == "only the first 1,000 are listed"
 
 
 def test_several_files_and_standard_input(tmp_path):
