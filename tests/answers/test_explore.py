@@ -453,7 +453,7 @@ def test_the_command_says_what_the_plan_is(topomap):
     assert "a bisimulation of 48 pairs of dstates, checked" in never.stdout
     settled = topomap("explore", SNAKES[3][0], "--planar")
     assert settled.returncode == 0
-    assert settled.stdout.endswith("settled: the map is closed, and the only one\n")
+    assert settled.stdout.endswith("settled: the only map that is optimal, and it is closed\n")
     so_far = topomap("explore", "instances/manhattan-tour20.lp", "--horizon", "0").stdout
     assert so_far.startswith("1 map (1 best so far)")
     assert "through a pending gateway in the map" in so_far

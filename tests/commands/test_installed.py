@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -11,6 +12,7 @@ import venv
 import zipfile
 
 import pytest
+import topomap
 from conftest import ROOT
 from topomap.cli import SUBCOMMANDS
 
@@ -128,6 +130,12 @@ def test_the_wheel_has_the_rules_and_no_clingo(built):
     with tarfile.open(sdist) as archive:
         tops = {name.split("/")[1] for name in archive.getnames() if "/" in name}
     assert {"encodings", "instances", "scripts", "tests", "docs", "Makefile", "README.md"} <= tops
+
+
+def test_the_version_is_one():
+    cited = re.search(r"^version: (\S+)$", (ROOT / "CITATION.cff").read_text(), re.M)[1]
+    newest = re.search(r"^## (\S+)", (ROOT / "CHANGES.md").read_text(), re.M)[1]
+    assert cited == newest == topomap.__version__ == version("topomap-asp")
 
 
 def test_clingo_keeps_its_exit_statuses(inside):

@@ -562,6 +562,8 @@ def test_maps_of_clingo_are_shown_with_their_instance(topomap, inside, closed, t
         # There are two best maps; clingo says More: no, and Optimal: 1.
         (("closed", "boundary", "minimal", "-n0"), "map 1 of 1 found"),
         (("closed", "-n0", "-q1"), "map 1 of 1 found"),
+        # All within a bound were asked for, and cost as they may.
+        (("closed", "minimal", "-n0", "--opt-mode=enum,99,99"), "map 1 of 4 given"),
         (
             ("planar", "boundary", "minimal", "closed", "-n0", "--opt-mode=optN"),
             "the only map given",

@@ -281,6 +281,43 @@ def test_one_of_two_maps_is_not_said_to_be_the_only_one(inside, tmp_path):
     assert ("map 1 of 1 found" in dot, "only" in dot) == (True, False)
 
 
+CUT = '{"Models": {"Number": 0, "More": "yes"}, "Call": [{}]}'
+QUIET = '{"Models": {"Number": 4, "More": "no"}, "Call": [{"Witnesses": []}]}'
+NONE = '{"Models": {"Number": 0, "More": "no"}, "Call": [{}]}'
+
+
+@pytest.mark.parametrize("command", ["show", "draw", "export"])
+@pytest.mark.parametrize(
+    ("text", "status", "said"),
+    [
+        ('{"maps": []}', 3, "no map in it; partial: it is not said to be complete"),
+        (
+            '{"maps": [], "count": 0, "complete": false, "fault": "timeout"}',
+            *(3, "no map in it; partial: timeout"),
+        ),
+        ('{"maps": [], "count": 0, "complete": true, "fault": null}', 1, "no map in it"),
+        (CUT, 3, "no map in it; partial: clingo was not asked for all, or did not end"),
+        (QUIET, 3, "no map in it; partial: clingo did not print all"),
+        (NONE, 1, "no map in it"),
+    ],
+)
+def test_a_file_without_a_map_does_not_say_that_there_is_none(
+    inside, tmp_path, command, text, status, said
+):
+    file = tmp_path / "maps.json"
+    file.write_text(text)
+    rest = {"draw": ["-o", tmp_path / "a.svg"], "export": ["--format", "dot"]}.get(command, [])
+    for given in ([file], [GRID, file]):
+        done = inside(command, *given, *rest)
+        assert (done.returncode, done.stdout, done.stderr) == (status, "", f"{file}: {said}\n")
+
+
+def test_a_search_that_found_no_map_says_so(inside):
+    done = inside("show", LARGE, "--timeout", "0.001")
+    assert (done.returncode, done.stdout) == (3, "")
+    assert done.stderr == f"{LARGE}: no map found yet; partial: timeout\n"
+
+
 def test_a_scene_is_one_of_those_found_unless_it_is_told_otherwise():
     seen = read(ROOT / GRID)
     (at, *_) = [one.at for one in solving.best(seen, Query(), Watch()) if one.proved]
@@ -300,7 +337,7 @@ def test_one_map_of_a_file_is_not_settled(inside, tmp_path):
     assert "whether it is the real one is open" in done.stdout
     assert json.loads(inside("explore", GRID, "--among", file, "--json").stdout)["kind"] is None
     done = inside("explore", GRID, "--planar")
-    assert done.stdout.endswith("settled: the map is closed, and the only one\n")
+    assert done.stdout.endswith("settled: the only map that is optimal, and it is closed\n")
 
 
 def test_more_than_are_counted_are_told_to_be_more(inside):
