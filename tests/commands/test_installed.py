@@ -10,6 +10,7 @@ import sysconfig
 import tarfile
 import venv
 import zipfile
+from importlib.metadata import version
 
 import pytest
 import topomap
