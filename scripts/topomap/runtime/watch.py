@@ -1,15 +1,18 @@
 """What may end a search before it is done: a time limit, a signal, want of memory."""
 
 import contextlib
+import functools
 import signal
 import time
-from collections.abc import Iterator
-from typing import Self
+from collections.abc import Callable, Iterator
+from typing import Generic, ParamSpec, Self, TypeVar
 
 from topomap.runtime.progress import Progress
 from topomap.runtime.status import INTERRUPT, exit_status
 
 MEMORY = "out of memory"
+P = ParamSpec("P")
+T = TypeVar("T")
 SIGNALS = (signal.SIGINT, signal.SIGTERM)
 
 
@@ -34,6 +37,37 @@ class Attempt:
             return False
         self.fault = str(error) if isinstance(error, Stopped) else MEMORY
         return True
+
+
+class _Spared(Generic[T]):
+    """An iterator that lets go of what it holds when memory runs out, and then says so: even to
+    note that takes some memory."""
+
+    def __init__(self, items: Iterator[T]):
+        self._items: Iterator[T] = items
+
+    def __iter__(self) -> Iterator[T]:
+        return self
+
+    def __next__(self) -> T:
+        try:
+            return next(self._items)
+        except MemoryError:
+            pass
+        # Only here has the error gone, and with it all that the generator held.
+        self._items = iter(())
+        raise Stopped(MEMORY)
+
+
+def spared(function: Callable[P, Iterator[T]]) -> Callable[P, Iterator[T]]:
+    """Of a generator function that may hold much: when memory runs out, it lets go of it and
+    raises Stopped."""
+
+    @functools.wraps(function)
+    def made(*args: P.args, **options: P.kwargs) -> Iterator[T]:
+        return _Spared(function(*args, **options))
+
+    return made
 
 
 class Deadline:

@@ -12,7 +12,7 @@ from fractions import Fraction
 from typing import Any
 
 from topomap.model.found import steps_json
-from topomap.runtime.watch import Watch
+from topomap.runtime.watch import Watch, spared
 from topomap.search.hypothesis import Hypothesis
 from topomap.search.traversal import breadth_first
 
@@ -85,6 +85,7 @@ class BranchingNode:
         }
 
 
+@spared
 def branching(node: Hypothesis, watch: Watch) -> Iterator[BranchingNode]:
     """The branching nodes of a planar tree, step by step."""
     for _ in breadth_first(node, watch):

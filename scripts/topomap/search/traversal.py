@@ -14,7 +14,7 @@ from topomap.model.experience import Experience
 from topomap.model.found import Cube, Found
 from topomap.model.query import Query
 from topomap.model.vocabulary import PRUNING
-from topomap.runtime.watch import Watch
+from topomap.runtime.watch import Watch, spared
 from topomap.search.hypothesis import Hypothesis
 
 OFTEN = 500  # nodes between two looks at the clock
@@ -28,6 +28,7 @@ def root(experience: Experience, query: Query) -> Hypothesis:
     return Hypothesis(experience, planar, query.places, perpendicular)
 
 
+@spared
 def depth_first(node: Hypothesis, watch: Watch | None = None) -> Iterator[Hypothesis]:
     """The nodes from this one down; memory grows with the steps, not with the tree."""
     open_children = [_children(node)[::-1]]
@@ -47,6 +48,7 @@ def depth_first(node: Hypothesis, watch: Watch | None = None) -> Iterator[Hypoth
         yield node
 
 
+@spared
 def breadth_first(node: Hypothesis, watch: Watch | None = None) -> Iterator[Hypothesis]:
     """The nodes from this one down, step by step; memory holds two levels of the tree."""
     level = [top := node.dstates]
@@ -62,6 +64,7 @@ def breadth_first(node: Hypothesis, watch: Watch | None = None) -> Iterator[Hypo
     node.goto(top)
 
 
+@spared
 def best_first(node: Hypothesis, watch: Watch | None = None) -> Iterator[Hypothesis]:
     """The nodes by the optimality policy (the paper, section IV): fewest paths, then fewest
     places; among equals the deepest. Taking the next one after a leaf is backtracking."""
