@@ -159,7 +159,10 @@ def test_maps_with_wrong_views_say_which(topomap):
     assert {"misread"} <= set(told[0])
 
 
-@pytest.mark.parametrize("form", ["svg", "png", "pdf"])
+SLOW = [pytest.param(form, marks=pytest.mark.long) for form in ("png", "pdf")]
+
+
+@pytest.mark.parametrize("form", ["svg", *SLOW])
 def test_a_drawing_is_the_same_bytes_again(tmp_path, form):
     files = [tmp_path / f"{number}.{form}" for number in (1, 2)]
     closed().draw(files[0])
@@ -177,7 +180,7 @@ def test_a_drawing_is_the_same_bytes_again(tmp_path, form):
 
 
 def test_threads_that_draw_at_once_draw_the_same(made):
-    alone = [one._repr_svg_() for one in made[:4]]
+    alone = [one._repr_svg_() for one in made[:2]]
     came = [None] * len(alone)
 
     def do(number):

@@ -139,7 +139,7 @@ def test_an_interrupted_table_says_so(tmp_path):
     assert not any(tmp_path.iterdir())
 
 
-@pytest.mark.parametrize("beyond", [[], ["--beyond"]])
+@pytest.mark.parametrize("beyond", [[], pytest.param(["--beyond"], marks=pytest.mark.long)])
 def test_a_time_limit_ends_the_table(topomap, tmp_path, beyond):
     file = tmp_path / "table.json"
     file.write_text("old")

@@ -584,7 +584,8 @@ def test_too_little_memory_is_said_at_once(tmp_path, call, megabytes):
 
 
 @pytest.mark.parametrize(
-    ("form", "title"), [("dot", r'"a\\nb: the only map'), ("clingraph", r'"a\\\\nb: the only map')]
+    ("form", "title"),
+    [("dot", r'"a\\nb: the only optimal map'), ("clingraph", r'"a\\\\nb: the only optimal map')],
 )
 def test_a_line_break_in_a_name_breaks_no_title(form, title):
     scene = replace(optimal("grid-3x3-snake")[1][0], name="a\nb", whole=True)

@@ -561,7 +561,9 @@ def test_of_an_answer_that_is_partial_no_map_is_said_not_to_be(tmp_path):
     large = ROOT / "instances/manhattan-tour40-signs30.lp"
     picture = tmp_path / "map.svg"
     done = run("topomap", "draw", large, "--map", "99", "--timeout", "0.5", "-o", picture)
-    assert (done.returncode, done.stderr) == (3, f"{large}: partial: timeout\n")
+    none = "no map found yet; "  # on a slow machine
+    assert done.returncode == 3
+    assert done.stderr in {f"{large}: {said}partial: timeout\n" for said in ("", none)}
     assert not picture.exists()
 
 
@@ -574,7 +576,7 @@ def test_no_map_and_no_time_leave_no_picture(tmp_path):
     large = ROOT / "instances/manhattan-tour88-signs30.lp"
     for call, status, line in (
         ([instance], 1, "no map is consistent with it"),
-        ([large, "--timeout", "0.01"], 3, "partial: timeout"),
+        ([large, "--timeout", "0.01"], 3, "no map found yet; partial: timeout"),
     ):
         done = run("topomap", "draw", *call, "-o", tmp_path / "map.svg")
         assert (done.returncode, done.stdout, done.stderr) == (status, "", f"{call[0]}: {line}\n")

@@ -519,6 +519,7 @@ def test_pictures_and_tables_have_names(three):
     assert all("scope" in e for e in page.all("th"))
 
 
+@pytest.mark.long
 def test_a_page_of_maps_that_are_given(tmp_path, capsys):
     """They are the maps of the page, of the kind that is claimed and no other."""
     solved, given = tmp_path / "solved.json", tmp_path / "given.json"

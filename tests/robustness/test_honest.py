@@ -68,10 +68,10 @@ CASES = {
         (LARGE, "planar", "same(3,12)", *QUICK),
         (LARGE, "not planar", "places < 20", "--optimal", *QUICK),
     ],
-    "explain": [(LARGE, "places > 20", "--closed", *QUICK), (SNAKE, "same(3,12)", *AT_ONCE)],
+    "explain": [(LARGE, "places > 20", "--closed", *AT_ONCE), (SNAKE, "same(3,12)", *AT_ONCE)],
     "explore": [
         (LARGE, *QUICK),
-        (LARGE, "--among", "closed", "--among", "perpendicular", *QUICK),
+        (LARGE, "--among", "closed", "--among", "perpendicular", *AT_ONCE),
         (SNAKE, "--among", "{four}", "--steps", "1"),
     ],
     "follow": [(GRID, "--no-wait", *AT_ONCE)],

@@ -135,7 +135,7 @@ def test_hostile_instances(tmp_path, name):
 def test_large_instances_with_many_faults(tmp_path):
     """They are cut short, and what is good but large is judged within the same time."""
     file = tmp_path / "bad.lp"
-    for piece, lines in (("view(0,{}).", 1001), ("veiw({},0).", 1001), ("turn({},9).", 1001)):
+    for piece, lines in (("view(0,{}).", 52), ("veiw({},0).", 52), ("turn({},9).", 52)):
         file.write_text("slots(4). view(0,0).\n" + "".join(map(piece.format, range(10, 10_000))))
         status, out, err = called(tmp_path, "validate", file)
         assert (status, err, out.count("\n")) == (2, "", lines)
@@ -436,6 +436,8 @@ def test_names_that_are_no_text(tmp_path):
     shutil.copy(GRID, tmp_path / name)
     done = topomap("solve", tmp_path / name, GRID, "--limit", "1")
     assert (done.returncode, done.stderr) == (3, "")
-    assert topomap("solve", tmp_path / name, "--json", "-o", tmp_path / name).returncode == 0
+    assert (
+        topomap("solve", tmp_path / name, "--json", "-o", tmp_path / f"{name}.json").returncode == 0
+    )
     (tmp_path / name).write_text("slots(5).")
     assert r"\udcff\n.lp:1: slots(5)" in refusal(tmp_path, "solve", tmp_path / name)

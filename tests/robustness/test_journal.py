@@ -16,7 +16,7 @@ from topomap.paper import beyond, statistics
 from topomap.runtime.journal import Journal
 from topomap.runtime.watch import Watch
 from topomap.search import traversal
-from topomap.solver import solving
+from topomap.solver import enumeration
 from topomap.solver.share import ALONE
 
 GRID = str(ROOT / "instances/grid-3x3-snake.lp")
@@ -97,24 +97,24 @@ def test_a_run_that_was_cut_goes_on(tmp_path, monkeypatch, name):
     assert {path.name for path in tmp_path.iterdir()} == {"whole", "file"}
 
 
-@pytest.mark.parametrize("way", [traversal, solving])
+@pytest.mark.parametrize("way", enumeration.WAYS)
 def test_what_is_done_is_not_done_again(tmp_path, monkeypatch, way):
     """A resumed run asks for the parts that are left, and no more."""
     file = str(tmp_path / "maps.json")
-    call = ["solve", PAPER, "--by", "clingo" if way is solving else "search", "-o", file]
+    call = ["solve", PAPER, "--by", way, "-o", file]
     with monkeypatch.context() as patch:
         cut_after(patch, 39)
         with pytest.raises(Cut):
             main(call)
     asked = []
-    ask = way.hypotheses
+    ask = enumeration.WAYS[way]
 
     def spy(*arguments, cubes=None, **options):
         if cubes is not None:
             asked.append(cubes)
         return ask(*arguments, cubes=cubes, **options)
 
-    monkeypatch.setattr(way, "hypotheses", spy)
+    monkeypatch.setitem(enumeration.WAYS, way, spy)
     assert main([*call, "--resume"]) == 0
     (left,) = asked
     assert len(left) == len(traversal.cubes(read(PAPER), Query())[0]) - 40
@@ -339,6 +339,7 @@ def test_beyond_goes_on(tmp_path, monkeypatch):
     assert (row["final"], row["clingo"]) == (88, {"final": 88})
 
 
+@pytest.mark.long
 def test_clingo_may_not_finish_beyond(monkeypatch):
     monkeypatch.setattr(beyond, "COLUMNS", [(4, 4, 16, False)])
     (row,) = beyond.rows(ALONE, Watch(), Journal(), limit=0.01)

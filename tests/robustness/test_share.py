@@ -283,7 +283,7 @@ class Bell(Watch):
     """A time limit that comes when so many files are in a folder."""
 
     def __init__(self, folder, files):
-        super().__init__(quiet=True)
+        super().__init__()
         self.folder, self.files = folder, files
 
     def tick(self):
