@@ -49,6 +49,7 @@ $(SETUP): pyproject.toml
 	$(if $(CURRENT),,rm -rf .venv)
 	$(PYTHON) -m venv .venv
 	$(PIP) install --editable '.[draw]'
+	$(BIN)/python -m compileall -q scripts/topomap  # so that the first call is as quick as later ones
 	printf '#!/bin/sh\nexec "$$(dirname "$$0")/topomap" clingo "$$@"\n' >$(BIN)/clingo
 	chmod +x $(BIN)/clingo
 	(cd -P .venv && pwd && bin/python -c '$(WHO)') >$@

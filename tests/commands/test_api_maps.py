@@ -6,6 +6,7 @@ from itertools import pairwise
 
 import networkx as nx
 import pytest
+import topomap
 from conftest import ROOT
 from defusedxml import ElementTree
 from topomap.api.maps import Map
@@ -251,3 +252,38 @@ def test_a_robot_is_not_sent_into_nothing():
         simulate("torus", 3, 3)
     with pytest.raises(InputError, match="grid-2x3: there is no place '7,7'"):
         simulate("grid", 2, 3, start="7,7")
+
+
+def test_an_experience_is_made_of_lists():
+    lists = [sorted(view) for view in SEEN.views], [*SEEN.turns]
+    assert topomap.Experience(4, *lists) == SEEN
+    signed = topomap.Experience(4, [[0], [0, 1]], [0], [[], ["pub"]], drops=[0], markers=[0])
+    assert signed.facts().splitlines()[1:] == [
+        "view(0,0). marker(0). drop(0).",
+        "turn(1,0). view(1,0). view(1,1). landmark(1,pub).",
+    ]
+    for views, turns, landmarks in ([[0]], [0], None), ([[0], [0]], [0], [[]]), ([], [], None):
+        with pytest.raises(ValueError, match=r"of n turns there are n \+ 1 views"):
+            topomap.Experience(4, views, turns, landmarks)
+
+
+@pytest.mark.parametrize(
+    ("experience", "fault"),
+    [
+        (topomap.Experience(4, [[0], [0]], [1]), "step 1: turn 1: no gateway there"),
+        (topomap.Experience(5, [[0]], []), r"slots\(5\): K must be even"),
+        (topomap.Experience(4, [[0]], [], [["The Pub"]]), "is not a ground fact"),
+    ],
+)
+def test_an_experience_that_cannot_be_is_refused(experience, fault):
+    calls = [
+        topomap.solve,
+        topomap.count,
+        topomap.explain,
+        topomap.explore,
+        lambda seen: topomap.ask(seen, "planar"),
+        lambda seen: topomap.check(seen, []),
+    ]
+    for call in calls:
+        with pytest.raises(topomap.InputError, match=fault):
+            call(experience)

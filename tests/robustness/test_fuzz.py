@@ -334,7 +334,9 @@ def actions(parser, path=()):
 
 
 # The options of clingo are its own.
-COMMANDS = [(path, of) for path, of in actions(cli._parser(None)) if path != ("clingo",)]
+COMMANDS = [
+    found for name in cli.SUBCOMMANDS if name != "clingo" for found in actions(cli._parser(name))
+]
 FILES = ["good.lp", "bad.lp", "none.lp", "dir", "net.graphml", "", "a\0b", "\udcff", "a" * 300]
 OUTPUTS = ["out", "dir", "none/out", "/dev/full", "", "a" * 300, "new", "a\0b", "out/out", "\udcff"]
 NUMBERS = ["0", "1", "2", "3", "5", "-1", "0.5", "1e9", "1000000000", "9" * 30, "9" * 5000, "nan"]

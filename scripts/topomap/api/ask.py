@@ -5,11 +5,10 @@ from dataclasses import dataclass
 from typing import Any, Unpack, overload
 
 from topomap.api.maps import Map
-from topomap.api.parts import Parts, query_of
+from topomap.api.parts import Parts, begin, query_of
 from topomap.model.experience import Experience
 from topomap.model.found import Found
 from topomap.model.query import Query
-from topomap.model.vocabulary import FORMS
 from topomap.questions import statements
 from topomap.questions.ask import Inquiry
 from topomap.runtime.limits import LARGEST
@@ -140,10 +139,9 @@ def ask(
     query = query_of(parts, bound=bound, horizon=horizon, encoding=encoding)
     if not statement:
         raise ValueError("ask: a statement is wanted, such as same(3,12)")
-    if encoding not in FORMS:
-        raise ValueError(f"encoding={encoding!r}: it is {' or '.join(FORMS)}")
+    watch = begin(experience, timeout, watch)
     seen = experience.cut(LARGEST if horizon is None else horizon)
     inquiry = Inquiry([statements.parse(text, seen, "ask") for text in statement])
     with Attempt() as attempt:
-        inquiry.settle(seen, query, optimal, watch or Watch(timeout))
+        inquiry.settle(seen, query, optimal, watch)
     return StatementAnswers(seen, query, optimal, inquiry, attempt.fault)

@@ -4,7 +4,7 @@ from collections.abc import Iterable
 from typing import Any, Unpack
 
 from topomap.api.maps import Map
-from topomap.api.parts import Parts, query_of
+from topomap.api.parts import Parts, begin, query_of
 from topomap.documents.maps import Document, document
 from topomap.documents.verdicts import Judged, verdicts
 from topomap.model.experience import Experience
@@ -51,7 +51,7 @@ def check(
         else document("map", {"maps": [{"at": [[*at] for at in _at(one)]}]})
         for one in maps
     ]
-    watch = watch or Watch(timeout)
+    watch = begin(experience, timeout, watch, noise is not None)
     demands = [part for part in PROPERTIES if part in query.parts]
     demands += [f"bound({bound})"] if bound else []
     judged = Judged(sum(len(one.maps) for one in documents), experience.steps, demands)

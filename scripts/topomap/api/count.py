@@ -1,9 +1,10 @@
 """Counting the search tree of an experience."""
 
+import contextlib
 from collections.abc import Iterator, Mapping
 from typing import Any, Unpack
 
-from topomap.api.parts import Parts, query_of
+from topomap.api.parts import Parts, begin, query_of
 from topomap.model.experience import Experience
 from topomap.model.vocabulary import DEMANDS
 from topomap.paper.statistics import tree
@@ -73,13 +74,9 @@ def count(
         ValueError: an unknown part.
     """
     query = query_of(parts, bound=bound, horizon=horizon, encoding=encoding, allowed=DEMANDS)
+    watch = begin(experience, timeout, watch)
     figures: dict[str, Any] = {}
-    with Attempt() as attempt:
-        if crew is not None:
-            tree(experience, query, watch or Watch(timeout), journal or Journal(), figures, crew)
-        else:
-            with crew_of(jobs) as made:
-                tree(
-                    experience, query, watch or Watch(timeout), journal or Journal(), figures, made
-                )
+    with Attempt() as attempt, contextlib.ExitStack() as stack:
+        workers = crew or stack.enter_context(crew_of(jobs))
+        tree(experience, query, watch, journal or Journal(), figures, workers)
     return Counts(figures, attempt.fault)

@@ -5,7 +5,7 @@ from dataclasses import replace
 from typing import Any, Unpack
 
 from topomap.api.maps import Map
-from topomap.api.parts import Parts, query_of
+from topomap.api.parts import Parts, begin, query_of
 from topomap.model.experience import Experience
 from topomap.model.found import Found
 from topomap.model.query import Query
@@ -130,9 +130,10 @@ def explain(
     """
     query = query_of(parts, bound=bound, horizon=horizon, allowed=DEMANDS)
     query = replace(query, horizon=None)  # which ends the experience here
+    watch = begin(experience, timeout, watch)
     seen = experience.cut(LARGEST if horizon is None else horizon)
     asked = None if statement is None else statements.parse(statement, seen, "explain")
     found = Explanation()
     with Attempt() as attempt:
-        Explainer(seen, query, asked, watch or Watch(timeout), found).settle()
+        Explainer(seen, query, asked, watch, found).settle()
     return Explained(seen, query, asked, found, attempt.fault)

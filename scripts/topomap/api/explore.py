@@ -5,7 +5,7 @@ from functools import cached_property
 from typing import Any, Unpack
 
 from topomap.api.maps import Map
-from topomap.api.parts import Parts, query_of
+from topomap.api.parts import Parts, begin, query_of
 from topomap.model.experience import Experience
 from topomap.model.found import Found
 from topomap.model.vocabulary import PRUNING
@@ -121,7 +121,7 @@ def candidates(
     of = [among] if isinstance(among, str) else among
     asked = [one if isinstance(one, str) else one.at for one in of]
     cut = experience.cut(LARGEST if horizon is None else horizon)
-    return gather(experience, cut, query, asked, watch or Watch(timeout))
+    return gather(experience, cut, query, asked, begin(experience, timeout, watch))
 
 
 def explore(
@@ -162,7 +162,7 @@ def explore(
     """
     if steps < 1:
         raise ValueError(f"steps={steps}: it must be 1 or more")
-    watch = watch or Watch(timeout)
+    watch = begin(experience, timeout, watch)
     if not isinstance(among, Candidates):
         among = candidates(experience, among, bound=bound, horizon=horizon, watch=watch, **parts)
     if not among.each:

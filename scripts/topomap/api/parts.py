@@ -4,8 +4,11 @@ import difflib
 from collections.abc import Collection, Mapping
 from typing import TypedDict
 
+from topomap.model.experience import Experience
+from topomap.model.facts import parse
 from topomap.model.query import Query
-from topomap.model.vocabulary import PARTS
+from topomap.model.vocabulary import FORMS, PARTS
+from topomap.runtime.watch import Watch
 
 
 class Parts(TypedDict, total=False):
@@ -49,5 +52,19 @@ def query_of(
     for name, value, least in (("bound", bound, 1), ("horizon", horizon, 0), ("noise", noise, 0)):
         if value is not None and value < least:
             raise ValueError(f"{name}={value}: it must be {least} or more")
+    if encoding not in FORMS:
+        raise ValueError(f"encoding={encoding!r}: it is {' or '.join(FORMS)}")
     asked = frozenset(part for part, value in parts.items() if value)
     return Query(asked, bound, horizon, encoding, noise)
+
+
+def begin(
+    experience: Experience, timeout: float | None, watch: Watch | None, noisy: bool = False
+) -> Watch:
+    """The watch of a call: that of a command, which has read the experience and so checked it;
+    or a new one, once an experience that may have been made in Python is checked. Raises
+    InputError, one line, if it cannot be; ``noisy`` allows what may be a misreading."""
+    if watch is not None:
+        return watch
+    parse(experience.facts(), "the experience, as facts", noisy)
+    return Watch(timeout)

@@ -6,7 +6,7 @@ from dataclasses import replace
 from typing import Unpack, overload
 
 from topomap.api.maps import Map
-from topomap.api.parts import Parts, query_of
+from topomap.api.parts import Parts, begin, query_of
 from topomap.model.experience import Experience
 from topomap.model.found import UNPROVED, Found
 from topomap.model.query import Query
@@ -171,13 +171,14 @@ def solve(
 
     Raises:
         ValueError: an unknown part, way or encoding, or what does not go together.
+        InputError: an experience that cannot be, one line that names step and fault.
     """
     encoding = encoding or ("fast" if noise is None else "plain")
     query = query_of(parts, bound=bound, horizon=horizon, encoding=encoding, noise=noise)
     if by not in WAYS:
         raise ValueError(f"{by!r} is not one of the ways {', '.join(WAYS)}")
-    if encoding not in ("fast", "plain") or (noise is not None and encoding != "plain"):
-        raise ValueError(f"encoding={encoding!r}: it is fast or plain, and plain with noise")
+    if noise is not None and encoding != "plain":
+        raise ValueError(f"encoding={encoding!r}: with noise it is plain")
     if limit is not None and limit < 1:
         raise ValueError(f"limit={limit}: it must be 1 or more")
     minimises = optimal or query.optimizes
@@ -185,12 +186,12 @@ def solve(
         raise ValueError("jobs: all maps are shared out, not the best ones")
     if noise is not None and by == "search":
         raise ValueError("noise does not go with by='search'")
+    begun = begin(experience, timeout, watch, noise is not None)
 
     def coming() -> Iterator[Found]:
         with contextlib.ExitStack() as stack:
             workers = crew or stack.enter_context(crew_of(jobs))
-            yield from every(experience, query, watch or ended, by, optimal, journal, workers)
+            yield from every(experience, query, begun, by, optimal, journal, workers)
 
-    ended = Watch(timeout)
     kind = "optimal" if optimal else query.kind
     return Answer(experience, query, kind, coming(), limit)

@@ -5,43 +5,18 @@ for the solver; a test sees to that.
 """
 
 import argparse
-import difflib
 import importlib
+import os.path
 import sys
 from collections.abc import Sequence
 from functools import cache
-from pathlib import Path
 from typing import Any
 
 from topomap.cli.arguments import STATUS, Parser
+from topomap.cli.subcommands import SUBCOMMANDS
 from topomap.runtime.errors import InputError, say
 from topomap.runtime.status import BAD_INPUT, DONE, INTERRUPTED, PARTIAL
 from topomap.runtime.version import VERSION
-
-SUBCOMMANDS = (
-    "generate",
-    "validate",
-    "solve",
-    "ask",
-    "explain",
-    "explore",
-    "follow",
-    "simulate",
-    "count",
-    "search",
-    "branching",
-    "check",
-    "table",
-    "family",
-    "draw",
-    "show",
-    "report",
-    "figures",
-    "export",
-    "import",
-    "path",
-    "clingo",
-)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -77,6 +52,8 @@ def parse(words: Sequence[str]) -> argparse.Namespace:
     """The arguments of a call. Raises InputError on bad usage."""
     first = words[0] if words else ""
     if first and not first.startswith("-") and first not in SUBCOMMANDS:
+        import difflib
+
         near = difflib.get_close_matches(first, SUBCOMMANDS, 1)
         hint = f"did you mean {near[0]}? " if near else ""
         raise InputError(f"topomap: no such command: {first!r} ({hint}see topomap --help)")
@@ -111,7 +88,7 @@ def _spare_inputs(args: argparse.Namespace) -> None:
 
 def _same(one: str, other: str) -> bool:
     try:
-        return Path(one).is_file() and Path(one).samefile(other)
+        return os.path.isfile(one) and os.path.samefile(one, other)  # noqa: PTH113, PTH121
     except (OSError, ValueError):
         return False
 
@@ -123,7 +100,7 @@ def _module(name: str) -> Any:
 
 @cache
 def _parser(name: str | None) -> Parser:
-    """A parser of the subcommand of that name, or of all."""
+    """A parser of the subcommand of that name; or one that knows the names of all."""
     parser = Parser(
         prog="topomap",
         description="Exact topological map-building: every map consistent with an exploration.",
@@ -132,6 +109,9 @@ def _parser(name: str | None) -> Parser:
     )
     parser.add_argument("--version", action="version", version=f"topomap {VERSION}")
     group = parser.add_subparsers(metavar="COMMAND", required=True)
-    for one in [name] if name else SUBCOMMANDS:
-        _module(one).add(group)
+    if name:
+        _module(name).add(group)
+    else:
+        for one, help in SUBCOMMANDS.items():
+            group.add_parser(one, help=help)
     return parser

@@ -7,6 +7,7 @@ import re
 from collections.abc import Iterable
 from typing import Any, NoReturn
 
+from topomap.cli.subcommands import SUBCOMMANDS
 from topomap.model.vocabulary import FORMS, PARTS, PRUNING
 from topomap.runtime.errors import InputError
 from topomap.runtime.limits import LARGEST
@@ -27,7 +28,9 @@ class Parser(argparse.ArgumentParser):
         raise InputError(f"{self.prog}: {message} (see {self.prog} --help)")
 
 
-def command(group: Any, name: str, help: str, example: str) -> Parser:
+def command(group: Any, name: str, example: str) -> Parser:
+    """The parser of a subcommand, with its help and an example, but no arguments yet."""
+    help = SUBCOMMANDS[name]
     made: Parser = group.add_parser(
         name,
         help=help,

@@ -16,8 +16,6 @@ def add(group: Any) -> None:
     made = command(
         group,
         "ask",
-        "say of each statement whether it holds in all maps that are consistent with an "
-        "exploration, in some or in none, with maps as witnesses",
         f"""\
   topomap ask instances/grid-4x4-snake.lp "same(3,12)" "places < 12" --planar --closed
   topomap ask instances/grid-3x3-snake.lp "linked(3,2,12,0)" "not planar" --optimal --json

@@ -17,8 +17,6 @@ def add(group: Any) -> None:
     made = command(
         group,
         "check",
-        "check maps, whoever made them, by encodings/check.lp and by a second checker "
-        "(a time limit ends the check between two maps)",
         """\
   topomap solve instances/grid-3x3-snake.lp --planar --json -o maps.json
   topomap check instances/grid-3x3-snake.lp maps.json --planar""",

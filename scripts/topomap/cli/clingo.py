@@ -13,7 +13,6 @@ def add(group: Any) -> None:
     command(
         group,
         "clingo",
-        "run clingo itself, with its options and exit statuses",
         """\
   topomap clingo --help
   topomap clingo "$(topomap path)/topomap.lp" instances/grid-3x3-snake.lp 0 --quiet""",

@@ -17,7 +17,6 @@ def add(group: Any) -> None:
     made = command(
         group,
         "count",
-        "count the search tree of an exploration, as the paper's Figure 4 does",
         """\
   topomap count instances/grid-4x4-snake.lp --planar --bound 16
   topomap count instances/grid-4x4-snake.lp --jobs 2""",

@@ -12,7 +12,6 @@ def add(group: Any) -> None:
     made = command(
         group,
         "draw",
-        "draw a map, as SVG, PNG or PDF",
         """\
   topomap draw instances/grid-4x4-snake.lp --map 2 -o map.svg
   topomap solve instances/grid-3x3-snake.lp --closed --json -o maps.json

@@ -16,9 +16,6 @@ def add(group: Any) -> None:
     made = command(
         group,
         "explain",
-        "say why a statement about the maps is impossible, or certain, or why there is no map, by "
-        "reasons each of which is needed. (The statement is about all maps, not only the optimal "
-        "ones: that another map is better is not such a reason)",
         f"""\
   topomap explain instances/grid-3x3-snake.lp "same(3,12)"
   topomap explain instances/grid-4x4-snake.lp "not same(0,30)" --planar --bound 16

@@ -22,9 +22,6 @@ def add(group: Any) -> None:
     made = command(
         group,
         "explore",
-        "say where to go next: by the shortest further walk that tells the maps apart, or leaves "
-        "the fewest of them in the worst case; if there is no such walk, by one to a pending "
-        "gateway; or prove that no walk can ever tell the maps apart",
         """\
   topomap explore instances/grid-4x4-snake.lp --bound 16
   topomap generate grid 4 4 --route snake --truth truth.json -o grid.lp

@@ -13,7 +13,6 @@ def add(group: Any) -> None:
     made = command(
         group,
         "export",
-        "write a map for other tools: GraphML, JSON (node-link), DOT, or facts for clingraph",
         """\
   topomap export instances/grid-4x4-snake.lp --map 2 --format graphml -o map.graphml
   topomap export maps.json --format dot | neato -n2 -Tsvg -o map.svg

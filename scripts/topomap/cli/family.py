@@ -19,8 +19,6 @@ def add(group: Any) -> None:
     made = command(
         group,
         "family",
-        "print the names of the instances of a family file, and write the arguments of each that "
-        "changed",
         "  topomap family instances/batch.txt -d build/instances",
     )
     made.add_argument("file", metavar="FAMILY")

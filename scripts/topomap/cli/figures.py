@@ -14,7 +14,6 @@ def add(group: Any) -> None:
     made = command(
         group,
         "figures",
-        "draw the paper's figures and some more, from computed answers",
         "  topomap figures -d docs/figures\n  topomap figures figure1 figure5 -d .",
     )
     made.add_argument(

@@ -21,8 +21,6 @@ def add(group: Any) -> None:
     made = command(
         group,
         "follow",
-        "follow an exploration as it happens, and print after each step how many hypotheses there "
-        "are, the best maps, what has become certain, and what to do next",
         """\
   topomap follow walk.lp --planar
   topomap follow instances/grid-3x3-snake.lp --no-wait --json

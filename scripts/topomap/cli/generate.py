@@ -22,7 +22,6 @@ def add(group: Any) -> None:
     made = command(
         group,
         "generate",
-        "explore an environment and write what is seen as an instance",
         """\
   topomap generate grid 3 4 --route snake -o grid-3x4-snake.lp
   topomap generate torus 3 3 --route walk --steps 20 --seed 1

@@ -12,7 +12,6 @@ def add(group: Any) -> None:
     made = command(
         group,
         "import",
-        "read a map that export wrote, and write it as solve --json does",
         """\
   topomap export instances/grid-4x4-snake.lp --format graphml -o map.graphml
   topomap import map.graphml -o maps.json

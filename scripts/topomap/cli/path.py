@@ -14,7 +14,6 @@ def add(group: Any) -> None:
     made = command(
         group,
         "path",
-        "print the folder of the encodings, for clingo, or that of the instances",
         """\
   topomap path
   topomap clingo "$(topomap path)/topomap.lp" "$(topomap path instances)/grid-3x3-snake.lp" 0""",

@@ -18,9 +18,6 @@ def add(group: Any) -> None:
     made = command(
         group,
         "report",
-        "write one page about explorations, to be opened in a browser: the log, how many "
-        "hypotheses there are, what was refused, the best maps, and a replay step by step; the "
-        "page marks what could not be counted or drawn within --timeout (default: 60)",
         """\
   topomap report instances/grid-3x3-snake.lp -o report.html
   topomap report instances/grid-4x4-snake.lp --bound 16 --timeout 120 -o report.html""",

@@ -20,7 +20,6 @@ def add(group: Any) -> None:
     made = command(
         group,
         "search",
-        "search the tree of an exploration without clingo, as the paper does",
         """\
   topomap search instances/grid-4x4-snake.lp --planar --bound 16
   topomap search instances/grid-4x4-snake.lp --order depth

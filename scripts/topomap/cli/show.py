@@ -17,7 +17,6 @@ def add(group: Any) -> None:
     made = command(
         group,
         "show",
-        "print a map, drawn in the terminal and then described in words",
         """\
   topomap show instances/grid-4x4-snake.lp --perpendicular
   topomap show maps.json --map 3 | less -S

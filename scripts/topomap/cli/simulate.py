@@ -33,8 +33,6 @@ def add(group: Any) -> None:
     made = command(
         group,
         "simulate",
-        "let a robot explore an environment that it does not know, until it has one closed "
-        "optimal map, and compare this map with the real one",
         """\
   topomap simulate grid 3 3
   topomap simulate maze 4 4 --seed 2 --signs 0.3 --perpendicular

@@ -32,7 +32,6 @@ def add(group: Any) -> None:
     made = command(
         group,
         "solve",
-        "enumerate the maps that are consistent with an exploration",
         """\
   topomap solve instances/grid-3x3-snake.lp --planar --closed
   topomap solve instances/grid-3x4-paper.lp --optimal --json
@@ -69,14 +68,17 @@ def add(group: Any) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Enumerate the maps of each instance."""
-    from topomap.documents.maps import real_map
     from topomap.model.facts import read
 
     _with_noise(args)
     inputs = []
     for path in args.instance:
         experience = read(path, args.noise is not None)
-        truth = real_map(args.truth, experience, args.horizon) if args.truth else None
+        truth = None
+        if args.truth:
+            from topomap.documents.maps import real_map
+
+            truth = real_map(args.truth, experience, args.horizon)
         inputs.append((path, experience, truth))
     journal_of = run_of(args, *(experience for _, experience, _ in inputs))
     statuses, faults = [], []

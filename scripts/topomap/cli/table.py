@@ -19,7 +19,6 @@ def add(group: Any) -> None:
     made = command(
         group,
         "table",
-        "print the paper's Figure 4 beside our numbers, and write them as JSON",
         "  topomap table",
     )
     made.add_argument(

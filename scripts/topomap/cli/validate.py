@@ -14,8 +14,6 @@ def add(group: Any) -> None:
     made = command(
         group,
         "validate",
-        "report all that is wrong with instances, and what looks like a mistake, without solving "
-        "anything; the status is 2 if one of them has a fault (a warning is not a fault)",
         """\
   topomap validate walk.lp
   topomap validate instances/*.lp --json

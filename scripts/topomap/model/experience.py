@@ -1,7 +1,7 @@
 """Experiences: what an exploration does and sees."""
 
 from collections.abc import Container, Iterable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 
 from topomap.model.topology import Gateway, Place, TopologicalMap
 
@@ -11,23 +11,47 @@ MOST_SLOTS = 10**6  # sums of slots then stay below it
 MARKER = ("drop", "pick", "marker")
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, init=False)
 class Experience:
-    """An exploration of ``len(turns)`` steps (semantics: "Experience").
+    """An exploration of ``len(turns)`` steps (semantics: "Experience"; the paper, section II).
 
     ``views[t]`` and ``landmarks[t]``, t = 0..n, are what is seen after step t: slots
-    clockwise from the gateway stood at, and landmarks as terms; ``turns[t - 1]`` is
-    the turn of step t, in slots clockwise. ``drops``, ``picks`` and ``markers`` are the steps
-    after which the marker is put down, taken up and seen.
+    clockwise from the gateway where the agent stands, and landmarks as terms of clingo, such as
+    ``"pub"``; ``turns[t - 1]`` is the turn of step t, in slots clockwise. ``drops``, ``picks``
+    and ``markers`` are the steps after which the marker is put down, taken up and seen. Lists
+    will do: ``Experience(4, [[0], [0, 1], [0]], [0, 1])``.
     """
 
     slots: int
     views: tuple[frozenset[int], ...]
     turns: tuple[int, ...]
     landmarks: tuple[frozenset[str], ...]
-    drops: frozenset[int] = frozenset()
-    picks: frozenset[int] = frozenset()
-    markers: frozenset[int] = frozenset()
+    drops: frozenset[int]
+    picks: frozenset[int]
+    markers: frozenset[int]
+
+    def __init__(
+        self,
+        slots: int,
+        views: Iterable[Iterable[int]],
+        turns: Iterable[int],
+        landmarks: Iterable[Iterable[str]] | None = None,
+        drops: Iterable[int] = (),
+        picks: Iterable[int] = (),
+        markers: Iterable[int] = (),
+    ):
+        """Raises ValueError if there is not one view more than turns, and as many sets of
+        landmarks (by default there are none)."""
+        seen, done = tuple(map(frozenset, views)), tuple(turns)
+        signs = (frozenset[str](),) * len(seen)
+        if landmarks is not None:
+            signs = tuple(frozenset(of) for of in landmarks)
+        if not len(done) + 1 == len(seen) == len(signs):
+            told = f"{len(seen)} views, {len(done)} turns, landmarks after {len(signs)} steps"
+            raise ValueError(f"{told}: of n turns there are n + 1 views")
+        values = slots, seen, done, signs, frozenset(drops), frozenset(picks), frozenset(markers)
+        for one, value in zip(fields(self), values, strict=True):
+            object.__setattr__(self, one.name, value)
 
     @property
     def steps(self) -> int:
