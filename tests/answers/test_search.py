@@ -17,7 +17,7 @@ from topomap.runtime.journal import Journal
 from topomap.runtime.watch import Stopped, Watch
 from topomap.search import traversal
 from topomap.search.branching import Summary, branching
-from topomap.solver.share import crew
+from topomap.solver.crews import crew
 from topomap.worlds.environment import grid
 from topomap.worlds.instance import instance
 

@@ -7,7 +7,7 @@ from topomap.model.query import Query
 from topomap.paper.statistics import tree
 from topomap.runtime.journal import Journal
 from topomap.runtime.watch import Watch
-from topomap.solver import programs, share
+from topomap.solver import crews, programs
 from topomap.worlds.environment import grid
 from topomap.worlds.instance import instance
 
@@ -28,7 +28,7 @@ def speedup(jobs: int) -> list[dict[str, Any]]:
             programs.forget()
             figures.append({})
             begun = time.perf_counter()
-            with share.crew(number) as crew:
+            with crews.crew(number) as crew:
                 tree(experience, query, Watch(), Journal(), figures[-1], crew)
             seconds.append(time.perf_counter() - begun)
         rows.append(

@@ -27,7 +27,7 @@ from topomap.runtime.errors import InputError
 from topomap.runtime.journal import Journal
 from topomap.runtime.watch import Stopped, Watch
 from topomap.search import traversal
-from topomap.solver import share, solving
+from topomap.solver import crews, share, solving
 from topomap.solver.processes import Processes
 from topomap.solver.solving import count, demand_cover, hypotheses
 
@@ -206,10 +206,10 @@ def test_a_count_can_be_stopped():
 @pytest.fixture(params=["alone", "processes", "cluster"])
 def crew(request):
     if request.param == "alone":
-        return share.crew()
+        return crews.crew()
     if request.param == "processes":
-        return share.crew(2)
-    return share.crew(dask=request.getfixturevalue("cluster"))
+        return crews.crew(2)
+    return crews.crew(dask=request.getfixturevalue("cluster"))
 
 
 def test_results_come_in_order(crew):
@@ -250,8 +250,8 @@ def test_a_limit_holds(capsys):
 
 @pytest.mark.parametrize("kind", ["processes", "cluster"])
 def test_a_lost_worker_costs_its_unit_only(tmp_path, kind):
-    with local_cluster() if kind == "cluster" else share.crew(2) as made:
-        crew = share.crew(dask=made.scheduler_address) if kind == "cluster" else made
+    with local_cluster() if kind == "cluster" else crews.crew(2) as made:
+        crew = crews.crew(dask=made.scheduler_address) if kind == "cluster" else made
         with crew:
             done = list(crew.each(partial(die_once, tmp_path), range(20), QUIET))
             assert (tmp_path / "died").exists()
@@ -294,7 +294,7 @@ class Bell(Watch):
 @pytest.mark.parametrize("kind", ["processes", "cluster"])
 def test_the_time_limit_ends_what_is_being_done(tmp_path, kind, request):
     address = request.getfixturevalue("cluster") if kind == "cluster" else None
-    with share.crew(2, address) as crew, pytest.raises(Stopped, match="timeout"):
+    with crews.crew(2, address) as crew, pytest.raises(Stopped, match="timeout"):
         list(crew.each(partial(linger, tmp_path), range(9), Bell(tmp_path, 2)))
     if kind == "cluster":
         eventually(lambda: (tmp_path / "let go").exists())
@@ -373,7 +373,7 @@ def test_a_client_that_finds_no_cluster_is_closed(monkeypatch):
     try:
         for address in ("nowhere", "no://127.0.0.1:1", "tcp://127.0.0.1:1"):
             with pytest.raises(InputError):
-                share.crew(dask=address)
+                crews.crew(dask=address)
             assert not open_clients(), address
     finally:
         gc.enable()

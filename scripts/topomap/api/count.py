@@ -10,8 +10,8 @@ from topomap.model.vocabulary import DEMANDS
 from topomap.paper.statistics import tree
 from topomap.runtime.journal import Journal
 from topomap.runtime.watch import Attempt, Watch
+from topomap.solver.crews import crew as crew_of
 from topomap.solver.share import Crew
-from topomap.solver.share import crew as crew_of
 
 
 class Counts(Mapping[str, Any]):

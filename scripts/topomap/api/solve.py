@@ -12,9 +12,9 @@ from topomap.model.found import UNPROVED, Found
 from topomap.model.query import Query
 from topomap.runtime.journal import Journal
 from topomap.runtime.watch import Attempt, Stopped, Watch
+from topomap.solver.crews import crew as crew_of
 from topomap.solver.enumeration import WAYS, every
 from topomap.solver.share import ALONE, Crew
-from topomap.solver.share import crew as crew_of
 
 
 class Answer(Sequence[Map]):

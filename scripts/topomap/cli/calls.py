@@ -21,7 +21,7 @@ def parts_of(args: argparse.Namespace, of: Iterable[str] = PARTS) -> dict[str, b
 
 def crew_of(args: argparse.Namespace) -> "Crew":
     """Those who do the work."""
-    from topomap.solver.share import crew
+    from topomap.solver.crews import crew
 
     shared = (args.jobs or 1) > 1 or args.dask
     if shared and (getattr(args, "optimal", False) or OPTIMIZING & set(parts_of(args))):

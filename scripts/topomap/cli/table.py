@@ -51,7 +51,7 @@ def run(args: argparse.Namespace) -> int:
     """Count the paper's table, or what is beyond it, print it and write it as JSON."""
     from topomap.paper import beyond, figure4
     from topomap.runtime.watch import Attempt, heeding
-    from topomap.solver.share import crew
+    from topomap.solver.crews import crew
 
     name = "beyond" if args.beyond else "figure4"
     path = f"results/{name}.json" if args.output is None else args.output

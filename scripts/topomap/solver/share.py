@@ -27,20 +27,6 @@ class Crew(Protocol):
     def __exit__(self, *_: object) -> None: ...
 
 
-def crew(jobs: int = 1, dask: str | None = None) -> Crew:
-    """The workers of the Dask cluster at that address, or so many processes."""
-    # What shares work out is loaded where it is asked for: one process needs none of it.
-    if dask is not None:
-        from topomap.solver.cluster import Cluster
-
-        return Cluster(dask)
-    if jobs > 1:
-        from topomap.solver.processes import Processes
-
-        return Processes(jobs)
-    return ALONE
-
-
 class Alone:
     """This process does all itself."""
 
