@@ -1,0 +1,165 @@
+"""The public functions that find, count, make and check: they say what the commands say."""
+
+import json
+import subprocess
+import sys
+import threading
+from itertools import islice
+
+import pytest
+import topomap
+from conftest import COLUMNS, ROOT, answers
+
+GRID, LARGE = "instances/grid-3x3-snake.lp", "instances/manhattan-tour40-signs30.lp"
+
+
+@pytest.fixture(scope="module")
+def seen():
+    return topomap.read(ROOT / GRID)
+
+
+def test_the_public_names_are_there_and_come_when_they_are_used():
+    program = "import sys, topomap; print(*sys.modules); print(*dir(topomap))"
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
+    loaded, names = (set(line.split()) for line in done.stdout.splitlines())
+    assert not {name for name in loaded if name.startswith(("topomap.api", "clingo"))}
+    assert names == set(topomap.__all__)
+    for name in names:
+        assert getattr(topomap, name)
+    with pytest.raises(AttributeError, match="no attribute 'fly'"):
+        _ = topomap.fly
+
+
+@pytest.mark.parametrize("by", ["clingo", "search"])
+@pytest.mark.parametrize("parts", [{}, {"planar": True}, {"closed": True, "perpendicular": True}])
+def test_solve_gives_the_maps(seen, parts, by):
+    answer = topomap.solve(seen, by=by, **parts)
+    assert {one.at for one in answer} == answers(tuple(parts), seen.facts())
+    assert (answer.complete, answer.fault, answer.kind, answer.cost) == (
+        *(True, None),
+        *("consistent", ()),
+    )
+    assert [*answer] == [*answer]
+    assert answer[-1] == [*answer][-1]
+    assert answer[1:3] == [*answer][1:3]
+    with pytest.raises(IndexError):
+        _ = answer[999]
+
+
+def test_maps_come_as_they_are_found():
+    """The first are there long before the last could be."""
+    answer = topomap.solve(topomap.read(ROOT / LARGE))
+    first = [*islice(answer, 3)]
+    assert answer[0] == first[0]
+    assert len(set(first)) == 3
+
+
+def test_the_stream_keeps_nothing(seen):
+    answer = topomap.solve(seen)
+    assert len({one.at for one in answer.stream()}) == 88
+    assert (answer.complete, [*answer]) == (True, [])
+
+
+def test_the_best_are_proved(seen):
+    best = topomap.solve(seen, optimal=True)
+    assert (len(best), best.kind, best.cost, best.proved) == (2, "optimal", (6, 9), True)
+    assert {one.genus for one in best} == {0, 1}
+    none = topomap.solve(seen, bound=3)
+    assert (len(none), none.complete, none.proved) == (0, True, True)
+
+
+def test_what_is_cut_says_so(seen):
+    cut = topomap.solve(seen, limit=5)
+    assert (len(cut), cut.complete, cut.fault) == (5, False, "limit")
+    large = topomap.read(ROOT / LARGE)
+    timed = topomap.solve(large, optimal=True, timeout=0.001)
+    assert (timed.complete, timed.fault, timed.proved) == (False, "timeout", False)
+    counts = topomap.count(large, timeout=0.001)
+    assert (counts.complete, counts.fault, counts["nodes"]) == (False, "timeout", None)
+
+
+def test_what_solve_refuses(seen):
+    for options, fault in (
+        ({"planr": True}, "'planr' is not one of the parts planar, .*; did you mean planar"),
+        ({"bound": 0}, "bound=0"),
+        ({"horizon": -1}, "horizon=-1"),
+        ({"by": "magic"}, "'magic' is not one of the ways clingo, search"),
+        ({"encoding": "slow"}, "encoding='slow'"),
+        ({"noise": 1, "by": "search"}, "noise does not go with"),
+        ({"noise": 1, "encoding": "fast"}, "with noise it is plain"),
+        ({"limit": 0}, "limit=0"),
+        ({"optimal": True, "jobs": 2}, "not the best ones"),
+    ):
+        with pytest.raises(ValueError, match=fault):
+            topomap.solve(seen, **options)
+    with pytest.raises(ValueError, match="genus"):
+        topomap.count(seen, genus=True)
+
+
+def test_from_a_thread(seen):
+    """No signal handler is set, and none is needed."""
+    came = []
+
+    def work():
+        came.append(topomap.solve(seen, planar=True, optimal=True, timeout=60)[0].genus)
+        came.append(topomap.count(seen, planar=True)["final"])
+
+    thread = threading.Thread(target=work)
+    thread.start()
+    thread.join()
+    assert came == [0, 62]
+
+
+def test_by_processes(seen):
+    assert {one.at for one in topomap.solve(seen, jobs=2)} == answers((), seen.facts())
+    assert dict(topomap.count(seen, jobs=2)) == dict(topomap.count(seen))
+
+
+def test_misreadings():
+    seen = topomap.read(ROOT / "instances/grid-3x3-misread.lp", noisy=True)
+    assert not topomap.solve(seen)
+    (best,) = topomap.solve(seen, optimal=True, planar=True, noise=1)
+    assert best.misread == ((13, 2),)
+
+
+@pytest.mark.parametrize("column", [column for column in COLUMNS if column["environment"] == "3x3"])
+def test_count_is_the_papers(column):
+    seen = topomap.read(ROOT / f"instances/{column['instance']}.lp")
+    assert dict(topomap.count(seen, planar=column["planarity"])) == column["expected"]
+
+
+def test_generate_is_the_command(inside):
+    made = topomap.generate("maze", 3, 3, route="walk", steps=9, seed=4, signs=0.3)
+    call = "generate maze 3 3 --route walk --steps 9 --seed 4 --signs 0.3"
+    assert inside(*call.split()).stdout == made.text()
+    for arguments, fault in (
+        (("sphere", 2, 2), "'sphere' is not one of the environments"),
+        (("grid", 2), "rows and columns are wanted"),
+        (("grid", 2, 2), "needs steps"),
+    ):
+        with pytest.raises(ValueError, match=fault):
+            topomap.generate(*arguments, route="walk")
+
+
+def test_check_judges_maps(seen):
+    maps = topomap.solve(seen, closed=True)
+    judged = topomap.check(seen, maps, planar=True)
+    assert (judged.count, len(judged.unsound), judged.complete) == (4, 1, True)
+    wrong = {"at": [[step, 0, 0] for step in range(seen.steps + 1)]}
+    assert topomap.check(seen, [maps[0], maps[1].json(), wrong]).unsound
+    assert not topomap.check(seen, [maps[0], maps[1].json()]).unsound
+    with pytest.raises(ValueError, match="genus"):
+        topomap.check(seen, maps, genus=True)
+
+
+def test_validate_is_the_command(inside, tmp_path):
+    bad = tmp_path / "bad.lp"
+    bad.write_text("slots(4).\nveiw(0,0).")
+    for file in (bad, ROOT / GRID):
+        judged = topomap.validate(file)
+        (told,) = json.loads(inside("validate", file, "--json").stdout)["files"]
+        assert judged.document() == told
+        assert str(judged) + "\n" == inside("validate", file).stdout
+    assert topomap.validate(bad).faults[0]["line"] == 2
+    with pytest.raises(topomap.InputError, match="did you mean view/2"):
+        topomap.read(bad)
