@@ -26,15 +26,22 @@ GRID = ROOT / "instances/grid-3x3-snake.lp"
 PAPER = ROOT / "instances/grid-3x4-paper.lp"
 SNAKE = ROOT / "instances/grid-4x4-snake.lp"
 LARGE = ROOT / "instances/manhattan-tour40-signs30.lp"
+
+
+def quote(path):
+    """A path as a word of a command line, whatever is in its name."""
+    return shlex.quote(str(path))
+
+
 COMMANDS = {
     "generate": "generate grid 60 60 --route snake -o out",
-    "solve": f"solve {PAPER} -o out",
-    "solve --json": f"solve {GRID} {PAPER} --planar --json -o out",
-    "solve --optimal": f"solve {PAPER} --optimal --json -o out",
-    "solve --by search": f"solve {PAPER} --by search --json -o out",
-    "count": f"count {PAPER} --planar --json -o out",
-    "search": f"search {PAPER} --order depth --json -o out",
-    "branching": f"branching {PAPER} --json -o out",
+    "solve": f"solve {quote(PAPER)} -o out",
+    "solve --json": f"solve {quote(GRID)} {quote(PAPER)} --planar --json -o out",
+    "solve --optimal": f"solve {quote(PAPER)} --optimal --json -o out",
+    "solve --by search": f"solve {quote(PAPER)} --by search --json -o out",
+    "count": f"count {quote(PAPER)} --planar --json -o out",
+    "search": f"search {quote(PAPER)} --order depth --json -o out",
+    "branching": f"branching {quote(PAPER)} --json -o out",
 }
 NUMBERS = [signal.SIGKILL, signal.SIGINT, signal.SIGTERM]
 
@@ -354,15 +361,17 @@ def test_want_of_memory(tmp_path, extra, record_property):
 @pytest.mark.parametrize(
     "call",
     [
-        f"search {SNAKE} --bound 16",
-        f"search {LARGE} --order best",
-        pytest.param(f"branching {SNAKE}", marks=pytest.mark.long),
+        f"search {quote(SNAKE)} --bound 16",
+        f"search {quote(LARGE)} --order best",
+        pytest.param(f"branching {quote(SNAKE)}", marks=pytest.mark.long),
     ],
 )
 def test_want_of_memory_of_a_search(tmp_path, call):
     """What it has counted until then is written."""
     out = tmp_path / "out"
-    status, _, told = confined((least_memory() + 12) * 1024, *call.split(), "--json", "-o", out)
+    status, _, told = confined(
+        (least_memory() + 12) * 1024, *shlex.split(call), "--json", "-o", out
+    )
     assert (status, "Traceback" in told) == (3, False)
     answer = json.loads(out.read_text())
     assert (answer["complete"], answer["fault"]) == (False, "out of memory")
