@@ -12,6 +12,7 @@ from oracles.brute_force import Hypothesis
 from oracles.statements import FIGURES, PROPERTIES, RELATIONS, relation
 from oracles.worlds import WORLDS, random_experience
 from topomap.documents.check import by_definition, by_rules
+from topomap.model import vocabulary
 from topomap.model.facts import parse, read
 from topomap.model.query import Query
 from topomap.questions import ask, statements
@@ -31,6 +32,13 @@ SIGNS = {
 }
 ANY = Query()
 GRIDS = {name: read(ROOT / f"instances/grid-{name}.lp") for name in ("3x3-snake", "4x4-snake")}
+
+
+def test_each_statement_of_the_vocabulary_is_defined_a_second_time():
+    """A new part of the theory is a statement at once; a meaning of it must not be forgotten."""
+    assert {*PROPERTIES} == {*vocabulary.PROPERTIES}
+    assert {*RELATIONS} == {*vocabulary.RELATIONS}
+    assert {*FIGURES} == {*vocabulary.FIGURES}
 
 
 def statement(draw, experience):
