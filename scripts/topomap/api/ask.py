@@ -108,7 +108,6 @@ def ask(
     optimal: bool = False,
     bound: int | None = None,
     horizon: int | None = None,
-    encoding: str = "fast",
     timeout: float | None = None,
     watch: Watch | None = None,
     **parts: Unpack[Parts],
@@ -124,7 +123,6 @@ def ask(
             there is none, of the best so far, pending gateways allowed.
         bound: the most places that a map may have.
         horizon: the last step that counts.
-        encoding: ``fast``, or ``plain``, the rules that state the theory.
         timeout: seconds after which it stops.
         watch: that of a command; then ``timeout`` is not used.
         parts: what the maps are to have.
@@ -133,10 +131,10 @@ def ask(
         An answer to each statement; what is not settled in time is said to be so.
 
     Raises:
-        ValueError: no statement, an unknown part or encoding, or a number that cannot be.
+        ValueError: no statement, an unknown part, or a number that cannot be.
         InputError: a text that is no statement about this experience; one line.
     """
-    query = query_of(parts, bound=bound, horizon=horizon, encoding=encoding)
+    query = query_of(parts, bound=bound, horizon=horizon)
     if not statement:
         raise ValueError("ask: a statement is wanted, such as same(3,12)")
     watch = begin(experience, timeout, watch)

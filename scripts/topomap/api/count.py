@@ -47,7 +47,7 @@ def count(
     *,
     bound: int | None = None,
     horizon: int | None = None,
-    encoding: str = "fast",
+    encoding: str = "work",
     timeout: float | None = None,
     jobs: int = 1,
     watch: Watch | None = None,
@@ -61,7 +61,7 @@ def count(
         experience: what was seen and done.
         bound: the most places that a map may have.
         horizon: the last step that counts.
-        encoding: ``fast``, or ``plain``, the rules that state the theory.
+        encoding: ``work``, or ``paper``, the rules as the paper states them (slow).
         timeout: seconds after which it stops.
         jobs: how many processes do the work.
         watch, journal, crew: those of a command; then ``timeout`` and ``jobs`` are not used.

@@ -7,7 +7,7 @@ from typing import TypedDict
 from topomap.model.experience import Experience
 from topomap.model.facts import parse
 from topomap.model.query import Query
-from topomap.model.vocabulary import FORMS, PARTS
+from topomap.model.vocabulary import FORMS, PARTS, STATED
 from topomap.runtime.watch import Watch
 
 
@@ -37,7 +37,7 @@ def query_of(
     *,
     bound: int | None = None,
     horizon: int | None = None,
-    encoding: str = "fast",
+    encoding: str = "work",
     noise: int | None = None,
     allowed: Collection[str] = tuple(PARTS),
 ) -> Query:
@@ -55,6 +55,10 @@ def query_of(
     if encoding not in FORMS:
         raise ValueError(f"encoding={encoding!r}: it is {' or '.join(FORMS)}")
     asked = frozenset(part for part, value in parts.items() if value)
+    if encoding == "paper" and (others := sorted(asked - STATED)):
+        raise ValueError(f"encoding='paper' does not state {', '.join(others)}")
+    if encoding == "paper" and noise is not None:
+        raise ValueError("encoding='paper' does not go with noise")
     return Query(asked, bound, horizon, encoding, noise)
 
 

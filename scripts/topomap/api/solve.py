@@ -140,7 +140,7 @@ def solve(
     horizon: int | None = None,
     noise: int | None = None,
     by: str = "clingo",
-    encoding: str | None = None,
+    encoding: str = "work",
     limit: int | None = None,
     timeout: float | None = None,
     jobs: int = 1,
@@ -157,9 +157,9 @@ def solve(
             there is none, the best so far, pending gateways allowed.
         bound: the most places that a map may have.
         horizon: the last step that counts.
-        noise: how many views may be wrong, as few as can be; by the plain encoding.
+        noise: how many views may be wrong, as few as can be.
         by: ``clingo``, or ``search``, the paper's own search.
-        encoding: ``fast``, or ``plain``, the rules that state the theory (with noise: plain).
+        encoding: ``work``, or ``paper``, the rules as the paper states them (slow).
         limit: stop after so many maps.
         timeout: seconds after which it stops; they begin now.
         jobs: how many processes do the work; not with what minimises.
@@ -173,12 +173,9 @@ def solve(
         ValueError: an unknown part, way or encoding, or what does not go together.
         InputError: an experience that cannot be, one line that names step and fault.
     """
-    encoding = encoding or ("fast" if noise is None else "plain")
     query = query_of(parts, bound=bound, horizon=horizon, encoding=encoding, noise=noise)
     if by not in WAYS:
         raise ValueError(f"{by!r} is not one of the ways {', '.join(WAYS)}")
-    if noise is not None and encoding != "plain":
-        raise ValueError(f"encoding={encoding!r}: with noise it is plain")
     if limit is not None and limit < 1:
         raise ValueError(f"limit={limit}: it must be 1 or more")
     minimises = optimal or query.optimizes

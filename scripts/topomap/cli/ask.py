@@ -3,7 +3,7 @@
 import argparse
 from typing import Any
 
-from topomap.cli.arguments import add_encoding, add_optimal, add_query, command
+from topomap.cli.arguments import add_optimal, add_query, command
 from topomap.cli.calls import parts_of
 from topomap.model.vocabulary import PARTS, VOCABULARY
 from topomap.runtime import formats
@@ -26,7 +26,6 @@ def add(group: Any) -> None:
     made.add_argument("statement", nargs="+", metavar="STATEMENT")
     add_optimal(made)
     add_query(made, PARTS)
-    add_encoding(made)
 
 
 def run(args: argparse.Namespace) -> int:
@@ -44,7 +43,6 @@ def run(args: argparse.Namespace) -> int:
                 optimal=args.optimal,
                 bound=args.bound,
                 horizon=args.horizon,
-                encoding=args.encoding,
                 watch=watch,
                 **parts_of(args),
             )
