@@ -6,7 +6,7 @@ import random
 from itertools import combinations, combinations_with_replacement, pairwise
 
 import pytest
-from conftest import TRIED
+from conftest import ENCODINGS, TRIED
 from oracles import phase_answers as phased
 from oracles.worlds import WORLDS, random_world, with_marker
 from topomap.documents.check import by_definition
@@ -16,7 +16,7 @@ from topomap.model.topology import TopologicalMap
 from topomap.runtime.watch import Stopped, Watch
 from topomap.search import traversal
 from topomap.solver import phases, plane, solving
-from topomap.solver.programs import FORMS, Program
+from topomap.solver.programs import Program, forget
 from topomap.worlds.environment import grid, maze, world
 from topomap.worlds.instance import instance
 
@@ -135,32 +135,40 @@ def way_to_new(made: TopologicalMap, place, taken) -> int | None:
     return None
 
 
-def found(way, experience, parts, form="fast", horizon=None, places=None):
-    """The hypotheses of a query; of the least cost, if it minimises."""
-    query = Query(frozenset(parts), places, horizon, form)
-    if form == "fast":
-        assert phases.serve(experience, query)
+def found(way, experience, parts, phased=True, horizon=None, places=None):
+    """The hypotheses of a query, in phases or in one call; of the least cost, if it minimises."""
+    query = Query(frozenset(parts), places, horizon)
+    assert phases.serve(experience, query)
+    with pytest.MonkeyPatch.context() as patched:
+        if not phased:
+            forget()
+            patched.setattr(phases, "serve", lambda *_: False)
+        return listed(way, experience, query)
+
+
+def listed(way, experience, query):
     answers = [each.at for each in way(experience, query, QUIET) if each.proved]
     assert len(answers) == len(set(answers))
     return set(answers)
 
 
 def agree(experience, horizon=None, more=MORE, searched=True, places=None, common=SQUARE):
-    """Demand the same answers of the phases, of the plain encoding and of the search."""
+    """Demand the same answers of the phases, of a single call and of the search."""
     for parts in more:
         asked = experience, (*common, *parts)
-        plain = found(solving.hypotheses, *asked, "plain", horizon, places)
+        single = found(solving.hypotheses, *asked, False, horizon, places)
+        forget()
         TRIED["queries in phases"] += 1
-        TRIED["queries in phases that had an answer"] += bool(plain)
-        assert found(solving.hypotheses, *asked, "fast", horizon, places) == plain, (
+        TRIED["queries in phases that had an answer"] += bool(single)
+        assert found(solving.hypotheses, *asked, True, horizon, places) == single, (
             experience.facts(),
             parts,
             horizon,
             places,
         )
         if searched:
-            assert found(traversal.hypotheses, *asked, "plain", horizon, places) == plain
-    return plain
+            assert found(traversal.hypotheses, *asked, True, horizon, places) == single
+    return single
 
 
 def squared(draw, most):
@@ -263,7 +271,7 @@ def test_lines(monkeypatch, tries):
 
 def planar_lines(experience):
     """The maps that lines.lp has with the clauses of planarity, and without, all listed."""
-    work = phases._Phases(experience.facts(), FORMS["fast"], lambda _: None)
+    work = phases._Phases(experience.facts(), ENCODINGS, lambda _: None)
     work.visits()
     answers = []
     for clauses in (True, False):
@@ -357,7 +365,7 @@ def test_named_worlds_in_every_way(name):
 
 def claims(experience, names):
     """What these phases find, and those that all begin with."""
-    work = phases._Phases(experience.facts(), FORMS["fast"], lambda _: None)
+    work = phases._Phases(experience.facts(), ENCODINGS, lambda _: None)
     for name in ("visits", *names):
         getattr(work, name)(*[experience] * (name == "beginnings"))
     return work._pairs, work._found
@@ -459,7 +467,7 @@ def test_the_snake_of_5x5_has_no_closed_map_of_fewer_places():
     """That is settled by the counting alone, and of the real map all is possible."""
     made = instance(grid(5, 5), "snake")
     for places in 24, 25:
-        work = phases._Phases(made.experience.facts(), FORMS["fast"], lambda _: None)
+        work = phases._Phases(made.experience.facts(), ENCODINGS, lambda _: None)
         work.visits()
         possible = {pair for pair in work._pairs if pair.name == "fits"}
         work.bounded(places)

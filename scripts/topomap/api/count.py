@@ -47,7 +47,6 @@ def count(
     *,
     bound: int | None = None,
     horizon: int | None = None,
-    encoding: str = "work",
     timeout: float | None = None,
     jobs: int = 1,
     watch: Watch | None = None,
@@ -61,7 +60,6 @@ def count(
         experience: what was seen and done.
         bound: the most places that a map may have.
         horizon: the last step that counts.
-        encoding: ``work``, or ``paper``, the rules as the paper states them (slow).
         timeout: seconds after which it stops.
         jobs: how many processes do the work.
         watch, journal, crew: those of a command; then ``timeout`` and ``jobs`` are not used.
@@ -73,7 +71,7 @@ def count(
     Raises:
         ValueError: an unknown part.
     """
-    query = query_of(parts, bound=bound, horizon=horizon, encoding=encoding, allowed=DEMANDS)
+    query = query_of(parts, bound=bound, horizon=horizon, allowed=DEMANDS)
     watch = begin(experience, timeout, watch)
     figures: dict[str, Any] = {}
     with Attempt() as attempt, contextlib.ExitStack() as stack:

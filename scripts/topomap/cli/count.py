@@ -3,7 +3,7 @@
 import argparse
 from typing import Any
 
-from topomap.cli.arguments import add_crew, add_encoding, add_query, add_resume, command
+from topomap.cli.arguments import add_crew, add_query, add_resume, command
 from topomap.cli.calls import crew_of, parts_of, run_of
 from topomap.model.vocabulary import OPTIMIZING, PARTS
 from topomap.runtime import formats
@@ -24,7 +24,6 @@ def add(group: Any) -> None:
     made.add_argument("instance", metavar="INSTANCE")
     add_query(made, [part for part in PARTS if part not in OPTIMIZING])
     add_crew(made)
-    add_encoding(made)
     add_resume(made)
 
 
@@ -46,7 +45,6 @@ def run(args: argparse.Namespace) -> int:
                 experience,
                 bound=args.bound,
                 horizon=args.horizon,
-                encoding=args.encoding,
                 watch=watch,
                 journal=journal,
                 crew=crew,
