@@ -87,7 +87,7 @@ AGGREGATES = {
     ],
     "explore/walk": ["1 >= { go(I,S): turns(S) }", "1 >= { drop(I): I = (0..(n-1)) }"],
     "bound": ["(places+0) >= #count { P: new(P) }"],
-    "input": ["M = #max { T: turned(T) }"],
+    "input": ["M = #max { T: has_turn(T) }"],
     "query": ["N = #count { S: has_axis(T,S) }", "N = #count { S: view(T,S) }"],
     "noise": [
         "noise >= { wrong(T): step(T) }",
