@@ -344,7 +344,8 @@ def test_what_is_refused_without_noise_is_a_misreading(topomap, tmp_path, facts)
 
 
 @pytest.mark.parametrize(
-    "option", [
+    "option",
+    [
         "--by=search",
         "--encoding=paper",
         "--jobs=2",

@@ -68,8 +68,10 @@ class Assignment:
         return on and self.at[t][0] == self.at[u][0]
 
     def crossed(self, a, b):
-        return a < b and b in self.path(a) and any(
-            p == q and x != y for p, x in self.axes(a) for q, y in self.axes(b)
+        return (
+            a < b
+            and b in self.path(a)
+            and any(p == q and x != y for p, x in self.axes(a) for q, y in self.axes(b))
         )
 
     def circular(self, a):

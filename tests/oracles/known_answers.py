@@ -450,9 +450,7 @@ def lines(facts: str, experience: Experience, truth: Truth, found: list) -> Quer
     squares = truth.having("closed", "perpendicular")
     maps = [at for at in squares if phase_answers.so(of_pairs, experience, at)]
     facts += phase_answers.text(found)
-    return Query(
-        ("phases/lines",), facts, phase_answers.lines(experience, maps), ("--project",)
-    )
+    return Query(("phases/lines",), facts, phase_answers.lines(experience, maps), ("--project",))
 
 
 def squares() -> Iterator[Query]:
@@ -503,7 +501,9 @@ def sizes() -> list[Query]:
     large exploration of which it is known what visits are new."""
     files = ("topomap", "bound", "query", *PARTS, "genus", "minimal")
     many = ("-c", "places=99")
-    whole = [Query(files, seen.facts(), frozenset(), many) for seen in (EXPERIENCES | WORLDS).values()]
+    whole = [
+        Query(files, seen.facts(), frozenset(), many) for seen in (EXPERIENCES | WORLDS).values()
+    ]
     phases = [query for query in queries() if query.files[0].startswith("phases/")]
     made = grid(5, 5)
     route = [EAST, WEST] * 2 + snake(made)

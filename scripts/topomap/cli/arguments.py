@@ -177,8 +177,8 @@ def add_encoding(command: Parser) -> None:
         "--encoding",
         choices=FORMS,
         default="work",
-        help="which rules clingo gets: those of encodings/, or those of encodings/paper/, which state "
-        "the theory as briefly as they can, and are slow (default: work)",
+        help="which rules clingo gets: those of encodings/, or those of encodings/paper/, which "
+        "state the theory as briefly as they can, and are slow (default: work)",
     )
 
 

@@ -109,7 +109,9 @@ def facts(maps: Iterable[tuple[int, Standing]]) -> str:
         if not lines:
             lines.append(f"slots({world.slots}).")
         index = {place: count for count, place in enumerate(world.stars)}
-        lines += [f"map_gateway({number},{index[place]},{slot})." for place, slot in world.gateways()]
+        lines += [
+            f"map_gateway({number},{index[place]},{slot})." for place, slot in world.gateways()
+        ]
         lines += [
             f"map_link({number},{index[a[0]]},{a[1]},{index[b[0]]},{b[1]})."
             for a, b in world.links.items()
