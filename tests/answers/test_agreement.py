@@ -1,6 +1,6 @@
 """Ways to the same answer, on named and on random experiences: stock clingo on the encoding that
-does the work, and on the statement of the paper, the search of the package, a slow independent search
-(oracles/brute_force.py), and two checkers of maps."""
+does the work, and on the statement of the paper, the search of the package, a slow independent
+search (oracles/brute_force.py), and two checkers of maps."""
 
 import random
 import subprocess

@@ -24,8 +24,8 @@ Figures of several programs are added up. Seconds are those from the facts to th
 answer, without the start of Python; memory is the most that the process had{start}. In each
 repetition the ways take turns, so that ratios are of one run; figures are medians. A way is
 measured {repeat} times at most, again only while it took less than {enough:g} s so far. Our
-encodings are cut after {limit:g} s, the others after {others:g} s, and at {memory:,} MB; growth rows
-have limits of their own. What was cut gives a bound; a way that was cut is not tried at the
+encodings are cut after {limit:g} s, the others after {others:g} s, and at {memory:,} MB; growth
+rows have limits of their own. What was cut gives a bound; a way that was cut is not tried at the
 harder rows of the same kind, but for our encodings where there is a goal. A row counts only if
 each way that ended gave the expected answer: the number of maps, the real map among them where
 all are listed, none twice. Where one is wrong or the ways differ, it is WRONG, and has no

@@ -112,8 +112,8 @@ AGGREGATES = {
     "phases/ends": [
         "I = #sum { N,R: digit(T,S,R,N) }",
         "N = #count { S: kind(T,S,I) }",
-        "0 != #sum { N,T,new: new(T), kind_count(T,I,N); -1,T,out: fresh(T), move(T,S), kind((T-1),S,I); "
-        "-1,T,in: fresh(T), kind(T,0,I) }",
+        "0 != #sum { N,T,new: new(T), kind_count(T,I,N); -1,T,out: fresh(T), move(T,S), "
+        "kind((T-1),S,I); -1,T,in: fresh(T), kind(T,0,I) }",
     ],
     "phases/lines": [
         "{ one_place(P,T,S) }",
@@ -129,8 +129,8 @@ AGGREGATES = {
 @pytest.mark.parametrize("file", [file for file in STATED if file != "check"])
 def test_no_body_weighs_or_counts_derived_atoms(file):
     """clasp miscounts on such bodies (docs/clasp.md): bound.lp counts new/1 (place/1 in paper/)
-    alone, each atom of which is one chosen atom; input.lp takes the largest of facts; the choices in
-    places.lp and noise.lp are of distinct atoms; those in runs.lp and lines.lp have no bound;
+    alone, each atom of which is one chosen atom; input.lp takes the largest of facts; the choices
+    in places.lp and noise.lp are of distinct atoms; those in runs.lp and lines.lp have no bound;
     query.lp, online/costs.lp, planar.lp and phases/counts.lp count facts; explore.lp
     sums facts, and atoms each of which is chosen; online/bound.lp counts new/1 as bound.lp does;
     ends.lp is solved with --eq=0. Of check.lp nothing reaches clasp (test_check.py)."""
