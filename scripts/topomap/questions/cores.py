@@ -2,7 +2,7 @@
 and verified by a map that breaks each."""
 
 import random
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 import clingo
@@ -12,11 +12,11 @@ from topomap.questions.reasons import FIRST, KINDS
 from topomap.runtime.status import INTERRUPT
 from topomap.runtime.watch import Stopped
 from topomap.solver.programs import Program
+from topomap.solver.threads import Put
 
 ORDERS = 12  # in which reasons are tried, at most
 CONFLICTS, CALLS = 3_000, 500  # of the solver, until no further order is tried
 TIDYING = 100  # reasons that are tried, so that a map breaks few others
-Put = Callable[[Any], bool]
 
 
 def dstates(symbols: Sequence[clingo.Symbol]) -> tuple[DState, ...]:

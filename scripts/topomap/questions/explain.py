@@ -14,7 +14,7 @@ import clingo
 
 from topomap.model.experience import DState, Experience
 from topomap.model.query import Query
-from topomap.questions.cores import Put, dstates, find_reasons, kind_of, numbers_of, verify
+from topomap.questions.cores import dstates, find_reasons, kind_of, numbers_of, verify
 from topomap.questions.explanations import Explanation, Reason
 from topomap.questions.reasons import (
     Broken,
@@ -28,6 +28,7 @@ from topomap.questions.statements import Statement
 from topomap.runtime.status import INTERRUPT
 from topomap.runtime.watch import Stopped, Watch
 from topomap.solver.programs import Program, calls, forget
+from topomap.solver.threads import Put
 
 LATE = {"closed", "travelled"}  # what a map may lack after a step and have after a later one
 LASTING = ("same", "at")  # relations of which later steps tell nothing new

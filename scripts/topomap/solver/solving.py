@@ -16,7 +16,8 @@ from topomap.model.vocabulary import PRUNING
 from topomap.runtime.folders import ENCODINGS
 from topomap.runtime.version import VERSION
 from topomap.runtime.watch import MEMORY, Stopped, Watch
-from topomap.solver.programs import answers, in_thread, program_of
+from topomap.solver.programs import answers, program_of
+from topomap.solver.threads import Put, in_thread
 
 
 def demand_cover(
@@ -142,7 +143,7 @@ def count(
     fresh = clingo.Function("fresh", [clingo.Number(last)])
     counts: list[tuple[int, tuple[float, ...]]] = []
 
-    def work(put: Callable[[Any], bool]) -> None:
+    def work(put: Put) -> None:
         for more in [[(fresh, True)], [(fresh, False)]] if grown and last else [[]]:
             program.solve(cube, more)
             counts.append(program.models())
