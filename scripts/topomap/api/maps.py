@@ -151,10 +151,15 @@ class Map:
 
     def _repr_svg_(self) -> str | None:
         """What a notebook shows; without the extra ``draw`` it shows the line of ``repr``."""
-        from topomap.api.draw import svg
         from topomap.runtime.extras import lacking
 
-        return None if lacking("draw") else svg(self._scene())
+        return None if lacking("draw") else self._drawn
+
+    @cached_property
+    def _drawn(self) -> str:
+        from topomap.api.draw import svg
+
+        return svg(self._scene())
 
     def json(self) -> dict[str, Any]:
         """The map as ``topomap solve --json`` writes it (``docs/formats.md`` names the keys)."""
