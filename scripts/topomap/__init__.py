@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 from topomap.runtime.version import VERSION as __version__
 
 if TYPE_CHECKING:
+    from topomap.api.answer import Answer
     from topomap.api.ask import ask
     from topomap.api.check import check
     from topomap.api.count import count
@@ -25,13 +26,13 @@ if TYPE_CHECKING:
     from topomap.api.maps import Map
     from topomap.api.read import read
     from topomap.api.simulate import simulate
-    from topomap.api.solve import Answer, solve
+    from topomap.api.solve import solve
     from topomap.api.validate import validate
     from topomap.model.experience import Experience
     from topomap.runtime.errors import InputError
 
 _WHERE = {
-    "Answer": "api.solve",
+    "Answer": "api.answer",
     "Experience": "model.experience",
     "InputError": "runtime.errors",
     "Map": "api.maps",

@@ -54,12 +54,6 @@ def test_maps_come_as_they_are_found():
     assert len(set(first)) == 3
 
 
-def test_the_stream_keeps_nothing(seen):
-    answer = topomap.solve(seen)
-    assert len({one.at for one in answer.stream()}) == 88
-    assert (answer.complete, [*answer]) == (True, [])
-
-
 def test_the_best_are_proved(seen):
     best = topomap.solve(seen, optimal=True)
     assert (len(best), best.kind, best.cost, best.proved) == (2, "optimal", (6, 9), True)

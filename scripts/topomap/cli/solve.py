@@ -140,7 +140,7 @@ def _solve_one(
         with Attempt() as attempt:
             for one in answer.stream():
                 report.add(one.found)
-        fault = answer.fault or attempt.fault
+        fault = attempt.fault or answer.fault
         report.end(fault)
     return fault, bool(report.count)
 

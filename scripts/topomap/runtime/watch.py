@@ -123,7 +123,8 @@ class Watch:
     """What a search looks at between two answers: its deadline, and the signals and the
     progress line of the command that began it, if one did. ``found`` counts the maps.
 
-    Without these it touches nothing of the process, and so goes with any thread.
+    Without these it touches nothing of the process, and so goes with any thread. Another thread
+    ends the search by saying in ``ended`` why.
     """
 
     def __init__(
@@ -133,16 +134,20 @@ class Watch:
         signals: Signals | None = None,
     ):
         self.found = 0
+        self.ended: str | None = None
         self.deadline = Deadline(timeout)
         self._progress = progress or Progress(quiet=True)
         self._signals = signals
         self.title, self.phase = self._progress.title, self._progress.phase
 
     def tick(self) -> None:
-        """Show progress; raises Stopped past the time limit and after a signal."""
+        """Show progress; raises Stopped past the time limit, after a signal, and when another
+        thread has ended the search."""
         self._progress.show(self.found)
         if self._signals and self._signals.came:
             raise Stopped(INTERRUPT)
+        if self.ended is not None:
+            raise Stopped(self.ended)
         if self.deadline.passed:
             raise Stopped("timeout")
 

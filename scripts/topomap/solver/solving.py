@@ -108,8 +108,7 @@ def best(
     """
     least: tuple[int, ...] = ()
     if query.noise is not None:
-        maps = way(experience, query.having("boundary"), watch)
-        cheapest = next((found for found in maps if found and found.proved), None)
+        cheapest = _first_proved(way(experience, query.having("boundary"), watch))
         if cheapest is None:
             return
         least = cheapest.cost[:2]
@@ -124,6 +123,11 @@ def best(
         yield from optimal
     else:
         yield from way(experience, query.having("boundary", "minimal"), watch, "best so far")
+
+
+def _first_proved(maps: Iterator[Found | None]) -> Found | None:
+    """The first map that is proved to be best, if there is one. With the call ends the search."""
+    return next((found for found in maps if found and found.proved), None)
 
 
 def count(
