@@ -13,7 +13,7 @@ from collections import Counter
 
 import pytest
 from conftest import BIN, ROOT, TRIED, run
-from topomap.drawing import scenes
+from topomap.api.scenes import scenes_under
 from topomap.drawing.layout import layout, straight
 from topomap.drawing.scenes import Scene
 from topomap.drawing.terminal import ARROWS, ASCII, BRAILLE, DOTS, LETTERS, text
@@ -578,7 +578,7 @@ def test_a_map_of_clingo_is_the_only_one_given_if_clingo_gave_all(tmp_path, argu
 
 def first(file):
     """The first map of a file, as it is shown."""
-    found, fault, _ = scenes.scenes_of(str(ROOT / GRID), Query(), Watch(), str(file))
+    found, fault, _ = scenes_under(Watch(), str(ROOT / GRID), Query(), str(file))
     assert fault is None
     return found[0]
 

@@ -5,7 +5,6 @@ from dataclasses import dataclass
 
 from topomap.documents.beginnings import beginning
 from topomap.documents.maps import read_maps
-from topomap.drawing import scenes
 from topomap.model import words
 from topomap.model.experience import DState, Experience
 from topomap.model.found import steps_json
@@ -14,6 +13,7 @@ from topomap.questions.standings import Standing, standing
 from topomap.runtime.errors import InputError, printable
 from topomap.runtime.watch import Attempt, Watch
 from topomap.solver import solving
+from topomap.solver.enumeration import best_maps
 
 At = tuple[DState, ...]
 KINDS = {
@@ -93,9 +93,9 @@ def gather(
         elif fault is None:
             watch.title(f"{one} maps")
             if one == "optimal":
-                best, fault = scenes.best(whole, "", query, watch)
-                for scene in best:
-                    found.setdefault(tuple(scene.at), scene.kind)
+                best, fault = best_maps(whole, query, watch)
+                for one_map in best:
+                    found.setdefault(one_map.at, one_map.kind)
                 continue
             with Attempt() as attempt:
                 for at in _of_kind(one, whole, query, watch):

@@ -3,14 +3,15 @@ of a journal, alone or shared out."""
 
 from array import array
 from collections.abc import Iterator
+from dataclasses import replace
 from functools import partial
 
 from topomap.model.experience import Experience
-from topomap.model.found import Cube, Found
+from topomap.model.found import UNPROVED, Cube, Found
 from topomap.model.query import Query
 from topomap.runtime.journal import Journal
 from topomap.runtime.limits import LARGEST
-from topomap.runtime.watch import Watch
+from topomap.runtime.watch import Attempt, Stopped, Watch
 from topomap.search import traversal
 from topomap.solver import solving
 from topomap.solver.share import ALONE, Crew
@@ -65,6 +66,33 @@ def every(
             elif found.at not in known:
                 journal.add(found.at)
                 yield found
+
+
+def proved_or_last(coming: Iterator[Found]) -> Iterator[Found]:
+    """Of maps that come, those that are proved to be what they are said to be; or the last of the
+    others, which is the best until then, if the work is cut before one is proved. Raises Stopped
+    after that."""
+    last, some = None, False
+    with Attempt() as attempt:
+        for found in coming:
+            if found.proved:
+                some = True
+                yield found
+            else:
+                last = found
+    if attempt.fault:
+        if last and not some:
+            yield replace(last, kind=UNPROVED)
+        raise Stopped(attempt.fault)
+
+
+def best_maps(experience: Experience, query: Query, watch: Watch) -> tuple[list[Found], str | None]:
+    """The optimal maps, or the best so far, in order; and why they may not be all, if so."""
+    found = []
+    with Attempt() as attempt:
+        for one in proved_or_last(every(experience, query, watch, optimal=True)):
+            found.append(one)
+    return sorted(found, key=lambda one: one.at), attempt.fault
 
 
 def _shared(
