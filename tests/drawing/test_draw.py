@@ -63,7 +63,7 @@ def lines_of(scene):
     """The lines in the picture of a map: of each gateway the one that leaves by it, y upwards;
     and the identifiers of all that is drawn."""
     file = BytesIO()
-    sheet.save(sheet.picture([scene]), file, "svg")
+    sheet.write(sheet.picture([scene]), file, "svg")
     groups = ElementTree.fromstring(file.getvalue()).iter("{http://www.w3.org/2000/svg}g")
     drawn = {group.get("id"): group for group in groups if group.get("id")}
     lines = {}

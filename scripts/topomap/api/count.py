@@ -34,7 +34,7 @@ class Counts(Reply, Mapping[str, Any]):
         return len(self._figures)
 
     def lines(self) -> Iterator[str]:
-        return iter(statistics.text(self, self.fault).splitlines())
+        return iter(statistics.figures_text(self, self.fault).splitlines())
 
     def document(self) -> dict[str, Any]:
         return dict(self._figures)

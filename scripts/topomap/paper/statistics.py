@@ -226,7 +226,7 @@ def _part(experience: Experience, query: Query, cube: Cube, watch: Watch | None)
     return tally
 
 
-def text(figures: Mapping[str, Any], fault: str | None) -> str:
+def figures_text(figures: Mapping[str, Any], fault: str | None) -> str:
     """The figures to read; of a search that was cut, ``at_least`` holds what the nodes met until
     then come to."""
     least = figures.get("at_least")

@@ -1,5 +1,5 @@
-"""What the page tells of an exploration, found out within a time limit: the best maps, the replay,
-drawings, and counts by clingo."""
+"""A chapter of the page: what it tells of an exploration, found out within a time limit: the best
+maps, the replay, drawings, and counts by clingo."""
 
 import time
 from collections.abc import Iterator
@@ -48,7 +48,7 @@ def given_maps(file: str, path: str, whole: Experience, query: Query) -> list[Sc
     return made
 
 
-class Exploration:
+class Chapter:
     """What the page tells of an exploration: of its best maps, or of those that are ``given``;
     ``faults`` are what it lacks, and why; ``whole`` tells whether the maps are all of their
     kind."""
