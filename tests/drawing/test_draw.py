@@ -22,7 +22,7 @@ from oracles.worlds import WORLDS, random_experience
 from topomap.api.draw import FORMATS
 from topomap.drawing import panel, sheet
 from topomap.drawing.layout import layout
-from topomap.drawing.planarize import lacking, planar_part, routed
+from topomap.drawing.planarize import left_out, planar_part, routed
 from topomap.drawing.scenes import Scene
 from topomap.model import words
 from topomap.model.facts import read
@@ -182,7 +182,7 @@ def check(scene):
     world = scene.world
     lines, drawn = lines_of(scene)
     part = planar_part(world)
-    further = lacking(part, world)
+    further = left_out(part, world)
     assert set(lines) == set(world.gateways())
     assert len([name for name in drawn if name.startswith("crossing-")]) == len(further)
     assert bool(further) == (world.genus() > 0)
@@ -244,7 +244,7 @@ def test_a_link_crosses_as_few_as_can_be(number):
     shortest way from face to face, those before it led."""
     world = some_map(number).world
     part = planar_part(world)
-    further = lacking(part, world)
+    further = left_out(part, world)
     whole, between = routed(part, further)
     assert whole.genus() == 0
     links = {}

@@ -16,7 +16,7 @@ from conftest import BIN, ROOT, TRIED, run
 from topomap.api.scenes import scenes_under
 from topomap.drawing.layout import layout, straight
 from topomap.drawing.scenes import Scene
-from topomap.drawing.terminal import ARROWS, ASCII, BRAILLE, DOTS, LETTERS, text
+from topomap.drawing.terminal import ARROWS, ASCII, BRAILLE, DOTS, LETTERS, drawn
 from topomap.model.experience import observe
 from topomap.model.query import Query
 from topomap.model.topology import TopologicalMap
@@ -46,7 +46,7 @@ def walk(world, steps, draw, start=None):
 
 def printed(scene, width=80, coloured=False):
     """The rows of the picture, and the lines of words after it."""
-    lines = text(scene, width, coloured).split("\n")
+    lines = drawn(scene, width, coloured).split("\n")
     assert lines[:3] == [*scene.title.split("\n"), ""]
     end = lines.index("", 3)
     return lines[3:end], lines[end + 1 :]
@@ -458,7 +458,7 @@ def test_other_encodings(topomap, encoding):
 
 def test_a_picture_in_ascii_has_no_other_characters():
     for made, steps in DOTTED[:4]:
-        shown = text(walk(made, steps, random.Random(0)), 70)
+        shown = drawn(walk(made, steps, random.Random(0)), 70)
         assert not shown.isascii()
         assert shown.translate(ASCII).isascii()
 

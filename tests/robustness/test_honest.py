@@ -367,7 +367,7 @@ def test_ask_leaves_open_what_the_closed_maps_do_not_settle():
     from topomap.questions import ask, statements
 
     experience = read(ROOT / "instances/manhattan-tour20.lp")
-    answers = ask.Inquiry([statements.parse("planar", experience, "ask")])
+    answers = ask.Inquiry([statements.parse_statement("planar", experience, "ask")])
     settle = answers._settle
 
     def closed_only(experience, query, kind, watch):

@@ -10,8 +10,8 @@ from topomap.model.experience import Experience
 from topomap.model.found import Found
 from topomap.model.query import Query
 from topomap.model.reply import Reply
-from topomap.questions import statements
 from topomap.questions.ask import Inquiry
+from topomap.questions.statements import parse_statement
 from topomap.runtime.limits import LARGEST
 from topomap.runtime.watch import Attempt, Watch
 
@@ -92,6 +92,9 @@ class StatementAnswers(Reply, Sequence[StatementAnswer]):
     def document(self) -> dict[str, Any]:
         return self.inquiry.document(self.experience, self.query, self.optimal)
 
+    def _gist(self) -> str:
+        return "; ".join(f"{one.statement}: {one.holds}" for one in self)
+
 
 def ask(
     experience: Experience,
@@ -136,7 +139,7 @@ def ask_under(
 ) -> StatementAnswers:
     """The same of the maps of a query, under the watch of a command."""
     seen = experience.cut(LARGEST if query.horizon is None else query.horizon)
-    inquiry = Inquiry([statements.parse(text, seen, "ask") for text in asked])
+    inquiry = Inquiry([parse_statement(text, seen, "ask") for text in asked])
     with Attempt() as attempt:
         inquiry.settle(seen, query, optimal, watch)
     return StatementAnswers(seen, query, optimal, inquiry, attempt.fault)

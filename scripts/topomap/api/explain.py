@@ -11,10 +11,8 @@ from topomap.model.found import Found
 from topomap.model.query import Query
 from topomap.model.reply import Reply
 from topomap.model.vocabulary import DEMANDS
-from topomap.questions import statements
-from topomap.questions.explain import Explainer
-from topomap.questions.explanations import Explanation, Reason
-from topomap.questions.statements import Statement
+from topomap.questions.explain import Explainer, Explanation, Reason
+from topomap.questions.statements import Statement, parse_statement
 from topomap.runtime.limits import LARGEST
 from topomap.runtime.watch import Attempt, Watch
 
@@ -127,7 +125,7 @@ def explain_under(
     """The same of the maps of a query, under the watch of a command."""
     seen = experience.cut(LARGEST if query.horizon is None else query.horizon)
     query = replace(query, horizon=None)  # which ends the experience here
-    asked = None if statement is None else statements.parse(statement, seen, "explain")
+    asked = None if statement is None else parse_statement(statement, seen, "explain")
     found = Explanation()
     with Attempt() as attempt:
         Explainer(seen, query, asked, watch, found).settle()

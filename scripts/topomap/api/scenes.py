@@ -12,7 +12,7 @@ from topomap.drawing.scenes import Scene
 from topomap.model.facts import parse
 from topomap.model.query import Query
 from topomap.runtime.errors import InputError
-from topomap.runtime.files import text
+from topomap.runtime.files import read_text
 from topomap.runtime.watch import Watch
 
 
@@ -34,10 +34,10 @@ def scenes_under(watch: Watch, path: str, query: Query, given: str | None = None
     """
     if given is not None:
         return _given(path, query, given)
-    content = text(path, maps.MOST_BYTES)
+    content = read_text(path, maps.MOST_BYTES_OF_MAPS)
     if content.lstrip()[:1] in ("{", "["):
         _refuse(path, query)
-        documents = maps.parse(content, path)
+        documents = maps.parse_maps(content, path)
         found = [scene for document in documents for scene in scenes.of_document(document)]
         return Choice(found, _missing(documents, found), False)
     experience = parse(content, path)
@@ -63,7 +63,7 @@ def _given(path: str, query: Query, given: str) -> Choice:
     if not documents:
         raise InputError(f"{given}: no maps of {path} in it")
     noisy = any("misread" in entry for document in documents for entry in document.maps)
-    seen = parse(text(path), path, noisy)
+    seen = parse(read_text(path), path, noisy)
     found = [scene for one in documents for scene in scenes.of_instance(seen, path, one)]
     return Choice(found, _missing(documents, found), False)
 

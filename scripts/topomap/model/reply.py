@@ -7,7 +7,7 @@ from typing import Any
 from topomap.model.words import short
 from topomap.runtime.errors import printable
 
-MOST_SHOWN = 80  # letters of the first line, in the text that Python shows of a reply
+MOST_SHOWN = 80  # letters of what a reply comes to, in the text that Python shows of it
 
 
 class Reply(ABC):
@@ -39,6 +39,9 @@ class Reply(ABC):
         return "\n".join(self.lines())
 
     def __repr__(self) -> str:
-        first = short(printable(next(iter(self.lines()), "")), MOST_SHOWN)
         partial = f", partial: {self.fault}" if self.fault else ""
-        return f"<{type(self).__name__}: {first}{partial}>"
+        return f"<{type(self).__name__}: {short(printable(self._gist()), MOST_SHOWN)}{partial}>"
+
+    def _gist(self) -> str:
+        """What the reply comes to, in one line: by itself its first line."""
+        return next(iter(self.lines()), "")

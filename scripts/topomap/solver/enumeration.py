@@ -1,4 +1,4 @@
-"""Every map of a query, by either way: at once, or part by part of the tree, each part a unit
+"""Every map of a query, by either way: at once, or branch by branch of the tree, each branch a unit
 of a journal, alone or shared out."""
 
 from array import array
@@ -31,7 +31,7 @@ def every(
 ) -> Iterator[Found]:
     """The maps of a query, or the best of them if ``optimal`` (better and better ones come
     before those that are proved); ``by`` is one of WAYS. If there is a journal or a crew, and
-    nothing is minimised, part by part of the tree. Raises Stopped."""
+    nothing is minimised, branch by branch of the tree. Raises Stopped."""
     journal = journal or Journal()
     way = WAYS[by]
     if optimal:
@@ -39,11 +39,11 @@ def every(
     elif query.optimizes or (crew is ALONE and not journal.kept):
         yield from filter(None, way(experience, query, watch))
     else:
-        parts, depth = traversal.cubes(experience, query)
+        branches, depth = traversal.cubes(experience, query)
         done = 0
-        known: set[Cube] = set()  # the maps of the part that was cut
+        known: set[Cube] = set()  # the maps of the branch that was cut
         with watch.deadline.waiting():
-            for value in journal.recorded(len(parts)):
+            for value in journal.recorded(len(branches)):
                 watch.tick()
                 if value is None:
                     known.clear()
@@ -54,11 +54,11 @@ def every(
                     watch.found += 1
                     yield Found(at, query.kind)
         if by == "clingo":
-            solving.demand_cover(experience, query, watch, parts, depth)
+            solving.demand_cover(experience, query, watch, branches, depth)
         if crew is ALONE:
-            left = way(experience, query, watch, cubes=parts[done:])
+            left = way(experience, query, watch, cubes=branches[done:])
         else:
-            left = _shared(crew, way, experience, query, watch, parts[done:])
+            left = _shared(crew, way, experience, query, watch, branches[done:])
         for found in left:
             if found is None:
                 known.clear()
