@@ -38,4 +38,4 @@ def run(args: argparse.Namespace) -> int:
     with output(args.output) as out:
         with heeding(args.timeout) as watch:
             answers = ask_under(watch, experience, args.statement, asked_query(args), args.optimal)
-        return tell(args, out, answers, bool(answers.has_maps))
+        return tell(args, out, answers, bool(answers.has_maps), args.instance)

@@ -41,6 +41,6 @@ def run(args: argparse.Namespace) -> int:
     ):
         with heeding(args.timeout) as watch:
             counts = count_under(watch, experience, asked_query(args), journal, crew)
-        status = tell(args, out, counts, bool(counts["final"]))
+        status = tell(args, out, counts, bool(counts["final"]), args.instance)
         journal.complete = counts.complete
     return status

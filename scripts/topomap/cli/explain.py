@@ -37,4 +37,4 @@ def run(args: argparse.Namespace) -> int:
     with output(args.output) as out:
         with heeding(args.timeout) as watch:
             answer = explain_under(watch, experience, args.statement, asked_query(args))
-        return tell(args, out, answer, answer.verdict not in ("open", "map"))
+        return tell(args, out, answer, answer.verdict not in ("open", "map"), args.instance)

@@ -47,7 +47,7 @@ def run(args: argparse.Namespace) -> int:
     with output(args.output) as out:
         with heeding(args.timeout) as watch:
             counts = count_by_search_under(watch, experience, asked_query(args), args.order)
-        return tell(args, out, counts, bool(counts["final"]))
+        return tell(args, out, counts, bool(counts["final"]), args.instance)
 
 
 def _best_first(args: argparse.Namespace, experience: "Experience") -> int:

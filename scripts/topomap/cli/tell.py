@@ -10,11 +10,17 @@ if TYPE_CHECKING:
     from topomap.model.reply import Reply
 
 
-def tell(args: argparse.Namespace, out: IO[str], reply: "Reply", yes: bool) -> int:
-    """Write a reply, as text or as JSON, which names the instance if the call has one; the exit
-    status: partial, or else whether the answer is ``yes``."""
+def tell(
+    args: argparse.Namespace,
+    out: IO[str],
+    reply: "Reply",
+    yes: bool,
+    instance: str | None = None,
+) -> int:
+    """Write a reply, as text or as JSON, which names the instance that it is about, if there is
+    one; the exit status: partial, or else whether the answer is ``yes``."""
     if args.json:
-        named = {"instance": args.instance} if "instance" in args else {}
+        named = {} if instance is None else {"instance": instance}
         out.write(formats.line({**named, **reply.document()}, reply.fault))
     else:
         out.writelines(f"{line}\n" for line in reply.lines())
