@@ -10,8 +10,9 @@ The functions and classes below are the public ones; each is loaded when it is f
 is in the packages beside them may change without notice: docs/DEVELOPMENT.md walks through them.
 """
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
+from topomap.runtime.lazy import loader
 from topomap.runtime.version import VERSION as __version__
 
 if TYPE_CHECKING:
@@ -66,16 +67,7 @@ __all__ = [
     "solve",
     "validate",
 ]
-
-
-def __getattr__(name: str) -> Any:
-    if name not in _WHERE:
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    from importlib import import_module
-
-    value = getattr(import_module(f"topomap.{_WHERE[name]}"), name)
-    globals()[name] = value
-    return value
+__getattr__ = loader(__name__, _WHERE)
 
 
 def __dir__() -> list[str]:

@@ -140,8 +140,8 @@ def test_check_judges_maps(seen):
     judged = topomap.check(seen, maps, planar=True)
     assert (judged.count, len(judged.unsound), judged.complete) == (4, 1, True)
     wrong = {"at": [[step, 0, 0] for step in range(seen.steps + 1)]}
-    assert topomap.check(seen, [maps[0], maps[1].json(), wrong]).unsound
-    assert not topomap.check(seen, [maps[0], maps[1].json()]).unsound
+    assert topomap.check(seen, [maps[0], maps[1].document(), wrong]).unsound
+    assert not topomap.check(seen, [maps[0], maps[1].document()]).unsound
     with pytest.raises(ValueError, match="genus"):
         topomap.check(seen, maps, genus=True)
 

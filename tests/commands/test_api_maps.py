@@ -71,7 +71,7 @@ def test_the_properties_are_what_solve_writes(made, topomap):
     assert len(answer["maps"]) == len(made) > 1
     by_route = {json.dumps(entry["at"]): entry for entry in answer["maps"]}
     for one in made:
-        told = one.json()
+        told = one.document()
         entry = by_route.pop(json.dumps(told["at"]))
         assert told == entry
         assert [[t, *dstate] for t, dstate in enumerate(one.at)] == entry["at"]
@@ -100,10 +100,10 @@ def test_what_was_misread_is_told():
     seen = Experience(2, (end, end, end), (0, 0), (frozenset(),) * 3)
     at = ((0, 0), (1, 0), (0, 0))
     sure = Map(seen, Found(at, "consistent"), noisy=True)
-    assert (sure.misread, sure.json()["misread"]) == ((), [])
+    assert (sure.misread, sure.document()["misread"]) == ((), [])
     assert sure.places == {0: [0], 1: [0]}
     wrong = Map(seen, Found(at, "best", (1, 1), misread=((1, 1),)))
-    assert wrong.json()["misread"] == [{"step": 1, "gateway": 1, "seen": False}]
+    assert wrong.document()["misread"] == [{"step": 1, "gateway": 1, "seen": False}]
     assert wrong.places == {0: [0], 1: [0, 1]}
     assert wrong.pending == [(1, 1)]
     assert "disbelieves step 1 (gateway 1 missed); places 2" in str(wrong)
@@ -132,7 +132,7 @@ def test_the_graph_is_what_export_writes(topomap, tmp_path):
     numbers = [entry["at"] for entry in json.loads(maps.read_text())["maps"]]
     for number in range(len(numbers)):
         one = closed(number)
-        nth = numbers.index(one.json()["at"]) + 1
+        nth = numbers.index(one.document()["at"]) + 1
         done = topomap("export", maps, "--map", nth, "--format", "json", "-o", file)
         assert done.returncode == 0
         written = nx.node_link_graph(json.loads(file.read_text()), edges="edges")
@@ -141,7 +141,7 @@ def test_the_graph_is_what_export_writes(topomap, tmp_path):
         assert plain(list(ours.nodes(data=True))) == plain(list(written.nodes(data=True)))
         edges = [plain(list(graph.edges(keys=True, data=True))) for graph in (ours, written)]
         assert edges[0] == edges[1]
-        assert json.loads(import_map(str(file)))["maps"] == [one.json()]
+        assert json.loads(import_map(str(file)))["maps"] == [one.document()]
 
 
 def test_a_map_that_was_found_does_not_say_how_many_there_are():
@@ -156,7 +156,9 @@ def test_maps_with_wrong_views_say_which(topomap):
     """Also where none is wrong."""
     told = json.loads(topomap("solve", GRID, "--noise", 0, "--closed", "--json").stdout)["maps"]
     made = solve(SEEN, noise=0, closed=True)
-    assert [one.json() for one in sorted(made, key=by_at)] == sorted(told, key=lambda m: m["at"])
+    assert [one.document() for one in sorted(made, key=by_at)] == sorted(
+        told, key=lambda m: m["at"]
+    )
     assert {"misread"} <= set(told[0])
 
 

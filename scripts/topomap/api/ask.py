@@ -9,8 +9,9 @@ from topomap.api.parts import Parts, begin, query_of
 from topomap.model.experience import Experience
 from topomap.model.found import Found
 from topomap.model.query import Query
-from topomap.questions import statements
+from topomap.model.reply import Reply
 from topomap.questions.ask import Inquiry
+from topomap.questions.statements import parse_statement
 from topomap.runtime.limits import LARGEST
 from topomap.runtime.watch import Attempt, Watch
 
@@ -29,7 +30,7 @@ class StatementAnswer:
     note: str | None
 
 
-class StatementAnswers(Sequence[StatementAnswer]):
+class StatementAnswers(Reply, Sequence[StatementAnswer]):
     """An answer to each statement, in their order."""
 
     def __init__(
@@ -40,8 +41,9 @@ class StatementAnswers(Sequence[StatementAnswer]):
         inquiry: Inquiry,
         fault: str | None,
     ):
+        super().__init__(fault)
         self.experience, self.query, self.optimal = experience, query, optimal
-        self.inquiry, self.fault = inquiry, fault
+        self.inquiry = inquiry
 
         def shown(found: Found | None) -> Map | None:
             return None if found is None else Map(experience, found)
@@ -68,11 +70,6 @@ class StatementAnswers(Sequence[StatementAnswer]):
         return len(self._each)
 
     @property
-    def complete(self) -> bool:
-        """Whether all statements are settled; if not, ``fault`` says why."""
-        return self.fault is None
-
-    @property
     def has_maps(self) -> bool | None:
         """Whether there is a map at all; None if that is not settled. If there is none, each
         statement is said to hold in none, and so would its opposite be."""
@@ -90,16 +87,13 @@ class StatementAnswers(Sequence[StatementAnswer]):
         return self.inquiry.cost
 
     def lines(self) -> Iterator[str]:
-        """The answer to read, as ``topomap ask`` prints it."""
         return self.inquiry.lines(self.experience, self.fault)
 
     def document(self) -> dict[str, Any]:
-        """The answer as ``topomap ask --json`` writes it, but for the name of the instance and
-        the keys that all answers have (``docs/formats.md``)."""
         return self.inquiry.document(self.experience, self.query, self.optimal)
 
-    def __str__(self) -> str:
-        return "\n".join(self.lines())
+    def _gist(self) -> str:
+        return "; ".join(f"{one.statement}: {one.holds}" for one in self)
 
 
 def ask(
@@ -110,7 +104,6 @@ def ask(
     horizon: int | None = None,
     encoding: str = "fast",
     timeout: float | None = None,
-    watch: Watch | None = None,
     **parts: Unpack[Parts],
 ) -> StatementAnswers:
     """Tell of each statement whether it holds in all maps that are consistent with an experience
@@ -126,7 +119,6 @@ def ask(
         horizon: the last step that counts.
         encoding: ``fast``, or ``plain``, the rules that state the theory.
         timeout: seconds after which it stops.
-        watch: that of a command; then ``timeout`` is not used.
         parts: what the maps are to have.
 
     Returns:
@@ -139,9 +131,15 @@ def ask(
     query = query_of(parts, bound=bound, horizon=horizon, encoding=encoding)
     if not statement:
         raise ValueError("ask: a statement is wanted, such as same(3,12)")
-    watch = begin(experience, timeout, watch)
-    seen = experience.cut(LARGEST if horizon is None else horizon)
-    inquiry = Inquiry([statements.parse(text, seen, "ask") for text in statement])
+    return ask_under(begin(experience, timeout, None), experience, statement, query, optimal)
+
+
+def ask_under(
+    watch: Watch, experience: Experience, asked: Sequence[str], query: Query, optimal: bool
+) -> StatementAnswers:
+    """The same of the maps of a query, under the watch of a command."""
+    seen = experience.cut(LARGEST if query.horizon is None else query.horizon)
+    inquiry = Inquiry([parse_statement(text, seen, "ask") for text in asked])
     with Attempt() as attempt:
         inquiry.settle(seen, query, optimal, watch)
     return StatementAnswers(seen, query, optimal, inquiry, attempt.fault)

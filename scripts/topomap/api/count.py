@@ -1,32 +1,28 @@
 """Counting the search tree of an experience."""
 
-import contextlib
 from collections.abc import Iterator, Mapping
 from typing import Any, Unpack
 
 from topomap.api.parts import Parts, begin, query_of
 from topomap.model.experience import Experience
+from topomap.model.query import Query
+from topomap.model.reply import Reply
 from topomap.model.vocabulary import DEMANDS
-from topomap.paper.statistics import tree
+from topomap.paper import statistics
 from topomap.runtime.journal import Journal
 from topomap.runtime.watch import Attempt, Watch
 from topomap.solver.crews import crew as crew_of
 from topomap.solver.share import Crew
 
 
-class Counts(Mapping[str, Any]):
+class Counts(Reply, Mapping[str, Any]):
     """The figures of a search tree, by name: ``per_step`` (hypotheses after each step, from 0),
     ``nodes``, ``maps_built``, ``final``, ``closed``, ``closed_text``, ``optimal``,
-    ``perpendicular``. What was not counted is None. ``fault`` says why not all was, if so."""
+    ``perpendicular``. What was not counted is None."""
 
     def __init__(self, figures: Mapping[str, Any], fault: str | None):
+        super().__init__(fault)
         self._figures = dict(figures)
-        self.fault = fault
-
-    @property
-    def complete(self) -> bool:
-        """Whether all was counted."""
-        return self.fault is None
 
     def __getitem__(self, key: str) -> Any:
         return self._figures[key]
@@ -36,6 +32,12 @@ class Counts(Mapping[str, Any]):
 
     def __len__(self) -> int:
         return len(self._figures)
+
+    def lines(self) -> Iterator[str]:
+        return iter(statistics.figures_text(self, self.fault).splitlines())
+
+    def document(self) -> dict[str, Any]:
+        return dict(self._figures)
 
     def __repr__(self) -> str:
         told = f", partial: {self.fault}" if self.fault else ""
@@ -50,9 +52,6 @@ def count(
     encoding: str = "fast",
     timeout: float | None = None,
     jobs: int = 1,
-    watch: Watch | None = None,
-    journal: Journal | None = None,
-    crew: Crew | None = None,
     **parts: Unpack[Parts],
 ) -> Counts:
     """Count the search tree by clingo, as the paper's Figure 4 does.
@@ -64,7 +63,6 @@ def count(
         encoding: ``fast``, or ``plain``, the rules that state the theory.
         timeout: seconds after which it stops.
         jobs: how many processes do the work.
-        watch, journal, crew: those of a command; then ``timeout`` and ``jobs`` are not used.
         parts: what the maps are to have; not genus and minimal.
 
     Returns:
@@ -74,9 +72,17 @@ def count(
         ValueError: an unknown part.
     """
     query = query_of(parts, bound=bound, horizon=horizon, encoding=encoding, allowed=DEMANDS)
-    watch = begin(experience, timeout, watch)
+    watch = begin(experience, timeout, None)
+    with crew_of(jobs) as crew:
+        return count_under(watch, experience, query, Journal(), crew)
+
+
+def count_under(
+    watch: Watch, experience: Experience, query: Query, journal: Journal, crew: Crew
+) -> Counts:
+    """The same of the maps of a query, under the watch of a command, which has a journal of the
+    work and a crew for it."""
     figures: dict[str, Any] = {}
-    with Attempt() as attempt, contextlib.ExitStack() as stack:
-        workers = crew or stack.enter_context(crew_of(jobs))
-        tree(experience, query, watch, journal or Journal(), figures, workers)
+    with Attempt() as attempt:
+        statistics.tree(experience, query, watch, journal, figures, crew)
     return Counts(figures, attempt.fault)

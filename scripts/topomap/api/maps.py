@@ -41,7 +41,8 @@ class Map:
     ):
         """The map of what was found in an experience: the ``number``-th of ``many`` (0: how many is
         not known), which are all that there are if ``whole``. ``name`` says where the experience
-        is from; ``noisy`` tells that views were allowed to be wrong: ``json`` says which were."""
+        is from; ``noisy`` tells that views were allowed to be wrong; ``document`` then says which
+        were."""
         self._seen, self._found = experience, found
         self._number, self._many, self._whole = number, many, whole
         self._name, self._noisy = name, noisy
@@ -161,7 +162,7 @@ class Map:
 
         return svg(self._scene())
 
-    def json(self) -> dict[str, Any]:
+    def document(self) -> dict[str, Any]:
         """The map as ``topomap solve --json`` writes it (``docs/formats.md`` names the keys)."""
         told = answers.map_json(self._world, self.at)
         if self._noisy or self.misread:

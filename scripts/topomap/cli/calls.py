@@ -10,6 +10,7 @@ from topomap.runtime.limits import MOST_PLACES
 
 if TYPE_CHECKING:
     from topomap.model.experience import Experience
+    from topomap.model.query import Query
     from topomap.solver.share import Crew
     from topomap.worlds.environment import Environment
 
@@ -17,6 +18,15 @@ if TYPE_CHECKING:
 def parts_of(args: argparse.Namespace, of: Iterable[str] = PARTS) -> dict[str, bool]:
     """The parts that are asked for."""
     return {part: True for part in of if getattr(args, part, False)}
+
+
+def asked_query(args: argparse.Namespace, of: Iterable[str] = PARTS) -> "Query":
+    """The query that asks for these parts, within the bound and the horizon of the call."""
+    from topomap.api.parts import query_of
+
+    encoding = getattr(args, "encoding", "fast")
+    parts = parts_of(args, of)
+    return query_of(parts, bound=args.bound, horizon=args.horizon, encoding=encoding)
 
 
 def crew_of(args: argparse.Namespace) -> "Crew":

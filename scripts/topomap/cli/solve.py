@@ -68,7 +68,7 @@ def add(group: Any) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Enumerate the maps of each instance."""
-    from topomap.model.facts import read
+    from topomap.api.read import read
 
     _with_noise(args)
     inputs = []

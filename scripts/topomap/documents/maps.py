@@ -20,11 +20,11 @@ from topomap.model.topology import TopologicalMap
 from topomap.model.vocabulary import PARTS, PROPERTIES
 from topomap.runtime import files, formats
 from topomap.runtime.errors import InputError
-from topomap.runtime.files import text
+from topomap.runtime.files import read_text
 from topomap.runtime.limits import LARGEST
 from topomap.solver.solving import misreadings
 
-MOST_BYTES = 2**32
+MOST_BYTES_OF_MAPS = 2**32
 LONGER = 10  # times as many dstates as steps: no map of the experience
 _AT = re.compile(r"at\((-?\d+),(-?\d+),(-?\d+)\)", re.ASCII)
 BEST_FIRST = "closed, best-first"
@@ -79,13 +79,13 @@ class Document:
             yield "closed"
 
 
-def read_maps(path: str, most: int = MOST_BYTES) -> list[Document]:
+def read_maps(path: str, most: int = MOST_BYTES_OF_MAPS) -> list[Document]:
     """The maps in a file of ``most`` bytes at most. Raises InputError, one line, where it
     holds something else."""
-    return parse(text(path, most), path)
+    return parse_maps(read_text(path, most), path)
 
 
-def parse(content: str, path: str) -> list[Document]:
+def parse_maps(content: str, path: str) -> list[Document]:
     """The maps in a text; ``path`` names it in errors."""
     try:
         data = json.loads(content)

@@ -15,6 +15,7 @@ from topomap.documents.maps import (
 )
 from topomap.model import words
 from topomap.model.experience import Experience, Misread
+from topomap.model.reply import Reply
 from topomap.model.topology import Gateway, TopologicalMap
 from topomap.runtime.errors import InputError
 
@@ -33,8 +34,8 @@ class Verdict:
         return not self.violations and not self.faults
 
 
-@dataclass
-class Judged:
+@dataclass(repr=False)
+class Judged(Reply):
     """The verdicts on ``count`` maps of an experience of ``steps`` steps, of which ``demands``
     were asked; ``fault`` says why not all were judged, if so."""
 
@@ -43,11 +44,6 @@ class Judged:
     demands: list[str]
     verdicts: list[Verdict] = field(default_factory=list)
     fault: str | None = None
-
-    @property
-    def complete(self) -> bool:
-        """Whether all the maps were judged."""
-        return self.fault is None
 
     @property
     def unsound(self) -> list[Verdict]:
@@ -60,7 +56,6 @@ class Judged:
         return sum(verdict.short for verdict in self.verdicts)
 
     def document(self) -> dict[str, Any]:
-        """The same as JSON."""
         return {
             "demands": self.demands,
             "unsound": [asdict(verdict) for verdict in self.unsound],
@@ -70,7 +65,6 @@ class Judged:
         }
 
     def lines(self) -> Iterator[str]:
-        """The same in lines to read."""
         for verdict in self.unsound:
             broken = [f"violation({rule},{step})" for rule, step in verdict.violations]
             yield f"{verdict.where}: {'; '.join(broken + verdict.faults)}"

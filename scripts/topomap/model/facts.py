@@ -34,7 +34,7 @@ def read(path: str | Path, noisy: bool = False) -> Experience:
     """The experience in an instance file; a ``noisy`` one may turn to gateways that were not
     seen, and views may lack slot 0. Raises InputError, one line, on bad input: the first of
     the faults that ``Facts.faults`` finds."""
-    return parse(files.text(path), str(path), noisy)
+    return parse(files.read_text(path), str(path), noisy)
 
 
 def parse(text: str, source: str, noisy: bool = False) -> Experience:

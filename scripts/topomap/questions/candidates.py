@@ -5,7 +5,6 @@ from dataclasses import dataclass
 
 from topomap.documents.beginnings import beginning
 from topomap.documents.maps import read_maps
-from topomap.drawing import scenes
 from topomap.model import words
 from topomap.model.experience import DState, Experience
 from topomap.model.found import steps_json
@@ -14,13 +13,14 @@ from topomap.questions.standings import Standing, standing
 from topomap.runtime.errors import InputError, printable
 from topomap.runtime.watch import Attempt, Watch
 from topomap.solver import solving
+from topomap.solver.enumeration import best_maps
 
 At = tuple[DState, ...]
-KINDS = {
+PARTS_OF = {
     "optimal": (),
     "closed": ("closed",),
     "perpendicular": ("closed", "perpendicular"),
-}  # the kinds of maps, and the parts that they have; of optimal ones see scenes.best
+}  # the kinds of maps, and the parts that they have; of optimal ones see best_maps
 GIVEN = "given"  # what a map is said to be that the caller has
 
 
@@ -80,35 +80,35 @@ def gather(
     watch: Watch,
 ) -> Candidates:
     """The maps of an experience, the beginning of a whole one, that are named by their kind (one
-    of KINDS) or by a file, or are given. Raises InputError where one is no map of it."""
+    of PARTS_OF) or by a file, or are given. Raises InputError where one is no map of it."""
     found: dict[At, str] = {}
     fault = None
     for number, one in enumerate(among, 1):
         if not isinstance(one, str):
             at = beginning(f"among: map {number}", steps_json(one), whole, experience)
             found.setdefault(at, GIVEN)
-        elif one not in KINDS:
+        elif one not in PARTS_OF:
             for at in _of_file(one, whole, experience, watch):
                 found.setdefault(at, one)
         elif fault is None:
             watch.title(f"{one} maps")
             if one == "optimal":
-                best, fault = scenes.best(whole, "", query, watch)
-                for scene in best:
-                    found.setdefault(tuple(scene.at), scene.kind)
+                best, fault = best_maps(whole, query, watch)
+                for one_map in best:
+                    found.setdefault(one_map.at, one_map.kind)
                 continue
             with Attempt() as attempt:
                 for at in _of_kind(one, whole, query, watch):
                     found.setdefault(at, one)
             fault = attempt.fault
-    every = not fault and all(one in KINDS for one in among)
+    every = not fault and all(one in PARTS_OF for one in among)
     each = tuple(Candidate(at, of) for at, of in sorted(found.items()))
     return Candidates(experience, each, every, fault)
 
 
 def _of_kind(kind: str, whole: Experience, query: Query, watch: Watch) -> Iterable[At]:
     """All maps of a kind."""
-    having = query.having(*KINDS[kind])
+    having = query.having(*PARTS_OF[kind])
     return (one.at for one in solving.hypotheses(whole, having, watch) if one is not None)
 
 

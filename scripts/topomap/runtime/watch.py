@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterator
 from typing import Generic, ParamSpec, Self, TypeVar
 
 from topomap.runtime.progress import Progress
-from topomap.runtime.status import INTERRUPT, exit_status
+from topomap.runtime.status import INTERRUPT
 
 MEMORY = "out of memory"
 P = ParamSpec("P")
@@ -162,22 +162,3 @@ def heeding(timeout: float | None = None, quiet: bool = False) -> Iterator[Watch
             yield Watch(timeout, progress, signals)
         finally:
             progress.close()
-
-
-class Run(Attempt):
-    """The work of a command: an attempt with a ``watch`` as above."""
-
-    def __init__(self, timeout: float | None = None, quiet: bool = False):
-        self._heeding = heeding(timeout, quiet)
-
-    def __enter__(self) -> Self:
-        self.watch = self._heeding.__enter__()
-        return self
-
-    def __exit__(self, kind: object, error: BaseException | None, trace: object) -> bool:
-        self._heeding.__exit__(None, None, None)
-        return super().__exit__(kind, error, trace)
-
-    def status(self, yes: bool) -> int:
-        """The exit status of the command: partial, or else yes or no."""
-        return exit_status(self.fault, yes)
