@@ -5,6 +5,7 @@ import threading
 from itertools import pairwise
 
 import networkx as nx
+import numpy
 import pytest
 import topomap
 from conftest import ROOT
@@ -267,12 +268,56 @@ def test_an_experience_is_made_of_lists():
             topomap.Experience(4, views, turns, landmarks)
 
 
+def test_an_experience_is_kept_plain():
+    """Both ways to an answer see the same landmarks, and JSON can hold the numbers."""
+    signs = [["f(1,2)"], ["b"], ["f(1, 2)"]]
+    spelt = topomap.Experience(4, [[0], [0], [0]], [0, 0], signs)
+    assert spelt.landmarks[0] == spelt.landmarks[2] == {"f(1,2)"}
+    assert [len(topomap.solve(spelt, by=by)) for by in ("clingo", "search")] == [1, 1]
+    numbers = topomap.Experience(
+        numpy.int64(4), numpy.array([[0, 1], [0, 1]]), numpy.array([1]), drops=numpy.array([0])
+    )
+    assert numbers == topomap.Experience(4, [[0, 1], [0, 1]], [1], drops=[0])
+    assert {type(slot) for view in numbers.views for slot in view} == {int}
+    assert json.dumps(topomap.solve(numbers)[0].json())
+
+
+@pytest.mark.parametrize(
+    ("arguments", "error", "fault"),
+    [
+        (("4", [[0]], []), ValueError, "slots='4': a whole number is wanted"),
+        ((4.0, [[0]], []), ValueError, r"slots=4\.0"),
+        ((True, [[0]], []), ValueError, "slots=True"),
+        ((4, [["0", "1"]], []), ValueError, r"views\[0\]: slot='0'"),
+        ((4, ["01"], []), TypeError, r"views\[0\]: a collection is wanted, .*, not '01'"),
+        ((4, [0, 0], [0]), TypeError, r"views\[0\]: a collection is wanted, .*, not 0"),
+        ((4, [[0], [0]], None), TypeError, "turns: a collection is wanted, .*, not None"),
+        ((4, [[0], [0]], [False]), ValueError, "turns: slot=False"),
+        ((4, [[0], [0]], [0], ["pub", "bar"]), TypeError, r"landmarks\[0\]: .*, not 'pub'"),
+        ((4, [[0]], [], [["The Pub"]]), ValueError, "'The Pub' is not a ground term"),
+        ((4, [[0]], [], [["a). view(0,1"]]), ValueError, "is not a ground term"),
+        ((4, [[0]], [], [["a,b"]]), ValueError, "is not a (plain|ground) term"),
+        ((4, [[0]], [], [["1+1"]]), ValueError, "is not a plain term: clingo reads it as 2"),
+        ((4, [[0]], [], [["(" * 9999]]), ValueError, "is nested deeper than 100"),
+        ((4, [[0]], [], [["\ud800"]]), ValueError, "is not a ground term"),
+        ((4, [[0]], [], [["a\0"]]), ValueError, "is not a (plain|ground) term"),
+        ((4, [[0]], [], [[5]]), ValueError, r"landmarks\[0\]: 5 is not a text"),
+        ((4, [[0], [0]], [0], None, [99]), ValueError, "drops: step=99: .* from 0 to 1"),
+        ((4, [[0], [0]], [0], None, [], [], "1"), TypeError, "markers: a collection is wanted"),
+    ],
+)
+def test_what_no_experience_is_made_of(arguments, error, fault):
+    with pytest.raises(error, match=fault):
+        topomap.Experience(*arguments)
+
+
 @pytest.mark.parametrize(
     ("experience", "fault"),
     [
         (topomap.Experience(4, [[0], [0]], [1]), "step 1: turn 1: no gateway there"),
         (topomap.Experience(5, [[0]], []), r"slots\(5\): K must be even"),
-        (topomap.Experience(4, [[0]], [], [["The Pub"]]), "is not a ground fact"),
+        (topomap.Experience(4, [[0, 7]], []), r"step 0: slot 7 is not in 0\.\.3"),
+        (topomap.Experience(4, [[0], [0]], [0], picks=[1]), "step 1: the marker is taken up, but"),
     ],
 )
 def test_an_experience_that_cannot_be_is_refused(experience, fault):
