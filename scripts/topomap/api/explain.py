@@ -5,7 +5,7 @@ from dataclasses import replace
 from typing import Any, Unpack
 
 from topomap.api.maps import Map
-from topomap.api.parts import Parts, begin, query_of
+from topomap.api.parts import Parts, begin, demand_text, query_of
 from topomap.model.experience import Experience
 from topomap.model.found import Found
 from topomap.model.query import Query
@@ -125,13 +125,17 @@ def explain(
         The verdict and the reasons; what was not found in time is said to be so.
 
     Raises:
+        TypeError: no experience, or a statement that is no text.
         ValueError: an unknown part, or a number that cannot be.
-        InputError: a text that is no statement about this experience; one line.
+        InputError: an experience that cannot be, or a text that is no statement about it; one
+            line.
     """
     query = query_of(parts, bound=bound, horizon=horizon, allowed=DEMANDS)
-    query = replace(query, horizon=None)  # which ends the experience here
+    if statement is not None:
+        demand_text("statement", statement, "same(3,12)")
     watch = begin(experience, timeout, watch)
-    seen = experience.cut(LARGEST if horizon is None else horizon)
+    seen = experience.cut(LARGEST if query.horizon is None else query.horizon)
+    query = replace(query, horizon=None)  # the experience ends there now
     asked = None if statement is None else statements.parse(statement, seen, "explain")
     found = Explanation()
     with Attempt() as attempt:

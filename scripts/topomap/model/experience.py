@@ -2,11 +2,10 @@
 
 from collections.abc import Container, Iterable
 from dataclasses import dataclass, fields, replace
-from typing import Any
 
 from topomap.model.terms import spelt
 from topomap.model.topology import Gateway, Place, TopologicalMap
-from topomap.runtime.checks import integer, shown, whole
+from topomap.runtime.checks import collection, integer, shown, whole
 
 DState = tuple[int, int]
 Misread = tuple[int, int | str]  # a step, and a gateway or a landmark that was missed or imagined
@@ -62,20 +61,20 @@ class Experience:
         """
         seen = tuple(
             frozenset(_slots(f"views[{step}]", view))
-            for step, view in enumerate(_collection("views", views))
+            for step, view in enumerate(collection("views", views))
         )
         done = tuple(_slots("turns", turns))
         signs = (frozenset[str](),) * len(seen)
         if landmarks is not None:
             signs = tuple(
                 _terms(f"landmarks[{step}]", of)
-                for step, of in enumerate(_collection("landmarks", landmarks))
+                for step, of in enumerate(collection("landmarks", landmarks))
             )
         if not len(done) + 1 == len(seen) == len(signs):
             told = f"{len(seen)} views, {len(done)} turns, landmarks after {len(signs)} steps"
             raise ValueError(f"{told}: of n turns there are n + 1 views")
         marks = [
-            frozenset(whole(f"{name}: step", step, 0, len(done)) for step in _collection(name, of))
+            frozenset(whole(f"{name}: step", step, 0, len(done)) for step in collection(name, of))
             for name, of in (("drops", drops), ("picks", picks), ("markers", markers))
         ]
         values = integer("slots", slots), seen, done, signs, *marks
@@ -155,26 +154,18 @@ class Experience:
         return TopologicalMap(self.slots, stars, links, landmarks)
 
 
-def _collection(name: str, given: Any) -> Iterable[Any]:
-    """What was given as a collection. Raises TypeError if it is none, or a text, whose letters
-    nobody means."""
-    if isinstance(given, str | bytes) or not isinstance(given, Iterable):
-        raise TypeError(f"{name}: a collection is wanted, such as a list, not {shown(given)}")
-    return given
-
-
 def _slots(name: str, given: Iterable[int]) -> list[int]:
     """Slots of any type of whole number, as int."""
     return [
         slot if type(slot) is int else integer(f"{name}: slot", slot)
-        for slot in _collection(name, given)
+        for slot in collection(name, given)
     ]
 
 
 def _terms(name: str, given: Iterable[str]) -> frozenset[str]:
     """Landmarks, each spelt as clingo spells it."""
     terms = set()
-    for term in _collection(name, given):
+    for term in collection(name, given):
         if not isinstance(term, str):
             raise ValueError(f"{name}: {shown(term)} is not a text, such as 'pub' or 'f(1,2)'")
         try:

@@ -1,14 +1,17 @@
 """What callers of the public functions give as numbers, shares, seconds and answers to yes or no:
 checked, and as plain Python has it. Each check raises ValueError, one line that names the argument
-and says what it may be."""
+and says what it may be; ``collection`` raises TypeError."""
 
 import math
 import operator
 import reprlib
+from collections.abc import Iterable
 from numbers import Real
-from typing import Any, overload
+from typing import Any, TypeVar
 
 from topomap.runtime.limits import LARGEST
+
+T = TypeVar("T")
 
 
 def integer(name: str, value: Any) -> int:
@@ -22,29 +25,25 @@ def integer(name: str, value: Any) -> int:
     raise ValueError(f"{said(name, value)}: a whole number is wanted")
 
 
-@overload
-def whole(name: str, value: None, least: int, most: int = LARGEST) -> None: ...
-@overload
-def whole(name: str, value: int, least: int, most: int = LARGEST) -> int: ...
-@overload
-def whole(name: str, value: int | None, least: int, most: int = LARGEST) -> int | None: ...
-def whole(name: str, value: int | None, least: int, most: int = LARGEST) -> int | None:
-    """A whole number between bounds; None, where an argument was not given, stays None."""
-    if value is None:
-        return None
+def whole(name: str, value: Any, least: int, most: int = LARGEST) -> int:
+    """A whole number between bounds."""
     try:
         number = integer(name, value)
     except ValueError:
         number = least - 1
     if not least <= number <= most:
-        bounds = f"{least} or more" if most >= LARGEST else f"from {least} to {most}"
-        if number > most >= LARGEST:
-            bounds = f"from {least} to {most}"
+        open_ended = most >= LARGEST and number < least
+        bounds = f"{least} or more" if open_ended else f"from {least} to {most}"
         raise ValueError(f"{said(name, value)}: it must be a whole number, {bounds}")
     return number
 
 
-def seconds(name: str, value: float | None) -> float | None:
+def whole_if_given(name: str, value: Any, least: int, most: int = LARGEST) -> int | None:
+    """The same; None, where an argument was not given, stays None."""
+    return None if value is None else whole(name, value, least, most)
+
+
+def seconds(name: str, value: Any) -> float | None:
     """A number of seconds, 0 or more and finite; None, for no limit, stays None."""
     if value is None:
         return None
@@ -56,7 +55,7 @@ def seconds(name: str, value: float | None) -> float | None:
     return number
 
 
-def share(name: str, value: float) -> float:
+def share(name: str, value: Any) -> float:
     """A share of something, from 0 to 1."""
     number = _real(value)
     if not 0 <= number <= 1:
@@ -64,11 +63,19 @@ def share(name: str, value: float) -> float:
     return number
 
 
-def flag(name: str, value: bool) -> bool:
+def flag(name: str, value: Any) -> bool:
     """True or False, and nothing else that Python takes for one of them."""
     if not isinstance(value, bool):
         raise ValueError(f"{said(name, value)}: it must be True or False")
     return value
+
+
+def collection(name: str, given: Iterable[T]) -> Iterable[T]:
+    """What was given as a collection. Raises TypeError if it is none, or is a text, whose letters
+    nobody means."""
+    if isinstance(given, str | bytes) or not isinstance(given, Iterable):
+        raise TypeError(f"{name}: a collection is wanted, such as a list, not {shown(given)}")
+    return given
 
 
 def _real(value: object) -> float:
