@@ -2,6 +2,7 @@
 
 import json
 import threading
+import time
 from itertools import pairwise
 
 import networkx as nx
@@ -20,10 +21,12 @@ from topomap.model.experience import Experience
 from topomap.model.facts import read
 from topomap.model.found import UNPROVED, Found
 from topomap.model.query import Query
+from topomap.questions.robot import Outcome, others
 from topomap.runtime import extras
 from topomap.runtime.errors import InputError
-from topomap.runtime.watch import Watch
+from topomap.runtime.watch import Stopped, Watch
 from topomap.solver import solving
+from topomap.worlds.environment import environment
 
 GRID = "instances/grid-3x3-snake.lp"
 SEEN = read(ROOT / GRID)
@@ -240,6 +243,55 @@ def test_a_robot_comes_to_what_the_command_writes(topomap, world, asked, options
 def test_a_robot_that_is_stopped_says_so():
     made = simulate("grid", 4, 4, timeout=1e-9)
     assert (made.complete, made.fault, made.truth) == (False, "timeout", None)
+
+
+def test_a_time_limit_is_for_the_walks_of_others_too():
+    """A tour of so many places, and random walks over them, take far longer than this."""
+    begun = time.monotonic()
+    made = simulate("grid", 60, 60, timeout=0.5)
+    assert time.monotonic() - begun < 30  # without the limit: minutes
+    assert (made.complete, made.fault, made.tour, made.random) == (False, "timeout", None, None)
+    assert str(made).endswith(
+        "a tour over every way, by one who knows the map: not known; partial: timeout\n"
+        "a random walk over every way (median): not known; partial: timeout\n"
+    )
+
+
+class Ticks(Watch):
+    """A watch that stops the work when it is looked at for the so many-th time."""
+
+    def __init__(self, most):
+        super().__init__()
+        self.left = most
+
+    def tick(self):
+        self.left -= 1
+        if self.left < 0:
+            raise Stopped("timeout")
+
+
+@pytest.mark.parametrize("most", [0, 1, 20, 40])
+def test_others_that_are_cut_say_so(most):
+    """At once, in the pairing of places, between two random walks, and in one."""
+    world = environment("grid", 4, 4).map
+    cut, whole = others(world, (0, 0), Ticks(most)), others(world, (0, 0), Watch())
+    assert cut.fault == "timeout"
+    assert cut.random is None
+    assert cut.tour in (None, whole.tour)
+    assert (most == 0) <= (cut.tour is None)
+    assert (whole.fault, whole.tour) == (None, 28)
+    made = Outcome(world, ((0, 0), 1), SEEN, (), "settled", True, cut, True)
+    assert made.fault == "timeout"
+    assert made.json()["tour"] == cut.tour
+
+
+def test_a_world_that_is_too_large():
+    for make in (simulate, lambda *world: topomap.generate(*world, route="tour")):
+        with pytest.raises(InputError, match="grid 400 x 400: more than 100000 places"):
+            make("grid", 400, 400)
+    with pytest.raises(InputError, match="a tour: 1798 places have an odd number of ways, more"):
+        topomap.generate("hexagons", 30, 30, route="tour")
+    assert others(environment("hexagons", 30, 30).map, (0, 0), Watch(0)).tour is None
 
 
 def test_a_robot_is_not_sent_into_nothing():
