@@ -67,7 +67,9 @@ __all__ = [
     "solve",
     "validate",
 ]
-__getattr__ = loader(__name__, _WHERE)
+
+if not TYPE_CHECKING:  # a checker of types would take any name for one of these
+    __getattr__ = loader(__name__, _WHERE)
 
 
 def __dir__() -> list[str]:

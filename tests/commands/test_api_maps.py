@@ -2,9 +2,11 @@
 
 import json
 import threading
+import time
 from itertools import pairwise
 
 import networkx as nx
+import numpy
 import pytest
 import topomap
 from conftest import ROOT
@@ -19,10 +21,12 @@ from topomap.model.experience import Experience
 from topomap.model.facts import read
 from topomap.model.found import UNPROVED, Found
 from topomap.model.query import Query
+from topomap.questions.robot import Outcome, others
 from topomap.runtime import extras
 from topomap.runtime.errors import InputError
-from topomap.runtime.watch import Watch
+from topomap.runtime.watch import Stopped, Watch
 from topomap.solver import solving
+from topomap.worlds.environment import environment
 
 GRID = "instances/grid-3x3-snake.lp"
 SEEN = read(ROOT / GRID)
@@ -243,6 +247,55 @@ def test_a_robot_that_is_stopped_says_so():
     assert (made.complete, made.fault, made.truth) == (False, "timeout", None)
 
 
+def test_a_time_limit_is_for_the_walks_of_others_too():
+    """A tour of so many places, and random walks over them, take far longer than this."""
+    begun = time.monotonic()
+    made = simulate("grid", 60, 60, timeout=0.5)
+    assert time.monotonic() - begun < 30  # without the limit: minutes
+    assert (made.complete, made.fault, made.tour, made.random) == (False, "timeout", None, None)
+    assert str(made).endswith(
+        "a tour over every way, by one who knows the map: not known; partial: timeout\n"
+        "a random walk over every way (median): not known; partial: timeout\n"
+    )
+
+
+class Ticks(Watch):
+    """A watch that stops the work when it is looked at for the so many-th time."""
+
+    def __init__(self, most):
+        super().__init__()
+        self.left = most
+
+    def tick(self):
+        self.left -= 1
+        if self.left < 0:
+            raise Stopped("timeout")
+
+
+@pytest.mark.parametrize("most", [0, 1, 20, 40])
+def test_others_that_are_cut_say_so(most):
+    """At once, in the pairing of places, between two random walks, and in one."""
+    world = environment("grid", 4, 4).map
+    cut, whole = others(world, (0, 0), Ticks(most)), others(world, (0, 0), Watch())
+    assert cut.fault == "timeout"
+    assert cut.random is None
+    assert cut.tour in (None, whole.tour)
+    assert (most == 0) <= (cut.tour is None)
+    assert (whole.fault, whole.tour) == (None, 28)
+    made = Outcome(world, ((0, 0), 1), SEEN, (), "settled", True, cut, True)
+    assert made.fault == "timeout"
+    assert made.json()["tour"] == cut.tour
+
+
+def test_a_world_that_is_too_large():
+    for make in (simulate, lambda *world: topomap.generate(*world, route="tour")):
+        with pytest.raises(InputError, match="grid 400 x 400: more than 100000 places"):
+            make("grid", 400, 400)
+    with pytest.raises(InputError, match="a tour: 1798 places have an odd number of ways, more"):
+        topomap.generate("hexagons", 30, 30, route="tour")
+    assert others(environment("hexagons", 30, 30).map, (0, 0), Watch(0)).tour is None
+
+
 def test_a_robot_is_not_sent_into_nothing():
     with pytest.raises(ValueError, match=r"'closed' is not one of the parts planar, perpendicular"):
         simulate("grid", 2, 3, closed=True)
@@ -269,12 +322,56 @@ def test_an_experience_is_made_of_lists():
             topomap.Experience(4, views, turns, landmarks)
 
 
+def test_an_experience_is_kept_plain():
+    """Both ways to an answer see the same landmarks, and JSON can hold the numbers."""
+    signs = [["f(1,2)"], ["b"], ["f(1, 2)"]]
+    spelt = topomap.Experience(4, [[0], [0], [0]], [0, 0], signs)
+    assert spelt.landmarks[0] == spelt.landmarks[2] == {"f(1,2)"}
+    assert [len(topomap.solve(spelt, by=by)) for by in ("clingo", "search")] == [1, 1]
+    numbers = topomap.Experience(
+        numpy.int64(4), numpy.array([[0, 1], [0, 1]]), numpy.array([1]), drops=numpy.array([0])
+    )
+    assert numbers == topomap.Experience(4, [[0, 1], [0, 1]], [1], drops=[0])
+    assert {type(slot) for view in numbers.views for slot in view} == {int}
+    assert json.dumps(topomap.solve(numbers)[0].json())
+
+
+@pytest.mark.parametrize(
+    ("arguments", "error", "fault"),
+    [
+        (("4", [[0]], []), ValueError, "slots='4': a whole number is wanted"),
+        ((4.0, [[0]], []), ValueError, r"slots=4\.0"),
+        ((True, [[0]], []), ValueError, "slots=True"),
+        ((4, [["0", "1"]], []), ValueError, r"views\[0\]: slot='0'"),
+        ((4, ["01"], []), TypeError, r"views\[0\]: a collection is wanted, .*, not '01'"),
+        ((4, [0, 0], [0]), TypeError, r"views\[0\]: a collection is wanted, .*, not 0"),
+        ((4, [[0], [0]], None), TypeError, "turns: a collection is wanted, .*, not None"),
+        ((4, [[0], [0]], [False]), ValueError, "turns: slot=False"),
+        ((4, [[0], [0]], [0], ["pub", "bar"]), TypeError, r"landmarks\[0\]: .*, not 'pub'"),
+        ((4, [[0]], [], [["The Pub"]]), ValueError, "'The Pub' is not a ground term"),
+        ((4, [[0]], [], [["a). view(0,1"]]), ValueError, "is not a ground term"),
+        ((4, [[0]], [], [["a,b"]]), ValueError, "is not a (plain|ground) term"),
+        ((4, [[0]], [], [["1+1"]]), ValueError, "is not a plain term: clingo reads it as 2"),
+        ((4, [[0]], [], [["(" * 9999]]), ValueError, "is nested deeper than 100"),
+        ((4, [[0]], [], [["\ud800"]]), ValueError, "is not a ground term"),
+        ((4, [[0]], [], [["a\0"]]), ValueError, "is not a (plain|ground) term"),
+        ((4, [[0]], [], [[5]]), ValueError, r"landmarks\[0\]: 5 is not a text"),
+        ((4, [[0], [0]], [0], None, [99]), ValueError, "drops: step=99: .* from 0 to 1"),
+        ((4, [[0], [0]], [0], None, [], [], "1"), TypeError, "markers: a collection is wanted"),
+    ],
+)
+def test_what_no_experience_is_made_of(arguments, error, fault):
+    with pytest.raises(error, match=fault):
+        topomap.Experience(*arguments)
+
+
 @pytest.mark.parametrize(
     ("experience", "fault"),
     [
         (topomap.Experience(4, [[0], [0]], [1]), "step 1: turn 1: no gateway there"),
         (topomap.Experience(5, [[0]], []), r"slots\(5\): K must be even"),
-        (topomap.Experience(4, [[0]], [], [["The Pub"]]), "is not a ground fact"),
+        (topomap.Experience(4, [[0, 7]], []), r"step 0: slot 7 is not in 0\.\.3"),
+        (topomap.Experience(4, [[0], [0]], [0], picks=[1]), "step 1: the marker is taken up, but"),
     ],
 )
 def test_an_experience_that_cannot_be_is_refused(experience, fault):

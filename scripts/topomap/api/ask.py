@@ -5,13 +5,14 @@ from dataclasses import dataclass
 from typing import Any, Unpack, overload
 
 from topomap.api.maps import Map
-from topomap.api.parts import Parts, begin, query_of
+from topomap.api.parts import Parts, begin, demand_text, query_of
 from topomap.model.experience import Experience
 from topomap.model.found import Found
 from topomap.model.query import Query
 from topomap.model.reply import Reply
 from topomap.questions.ask import Inquiry
 from topomap.questions.statements import parse_statement
+from topomap.runtime.checks import flag
 from topomap.runtime.limits import LARGEST
 from topomap.runtime.watch import Attempt, Watch
 
@@ -125,12 +126,17 @@ def ask(
         An answer to each statement; what is not settled in time is said to be so.
 
     Raises:
+        TypeError: no experience, or a statement that is no text.
         ValueError: no statement, an unknown part or encoding, or a number that cannot be.
-        InputError: a text that is no statement about this experience; one line.
+        InputError: an experience that cannot be, or a text that is no statement about it; one
+            line.
     """
     query = query_of(parts, bound=bound, horizon=horizon, encoding=encoding)
     if not statement:
         raise ValueError("ask: a statement is wanted, such as same(3,12)")
+    for text in statement:
+        demand_text("statement", text, "same(3,12)")
+    flag("optimal", optimal)
     return ask_under(begin(experience, timeout, None), experience, statement, query, optimal)
 
 

@@ -1,7 +1,7 @@
 """Counting the search tree of an experience."""
 
 from collections.abc import Iterator, Mapping
-from typing import Any, Unpack
+from typing import Any, Literal, Unpack, overload
 
 from topomap.api.parts import Parts, begin, query_of
 from topomap.model.experience import Experience
@@ -9,13 +9,19 @@ from topomap.model.query import Query
 from topomap.model.reply import Reply
 from topomap.model.vocabulary import DEMANDS
 from topomap.paper import statistics
+from topomap.runtime.checks import whole
 from topomap.runtime.journal import Journal
 from topomap.runtime.watch import Attempt, Watch
 from topomap.solver.crews import crew as crew_of
 from topomap.solver.share import Crew
 
+Figure = int | list[int] | None
+Number = Literal[
+    "nodes", "maps_built", "final", "closed", "closed_text", "optimal", "perpendicular"
+]
 
-class Counts(Reply, Mapping[str, Any]):
+
+class Counts(Reply, Mapping[str, Figure]):
     """The figures of a search tree, by name: ``per_step`` (hypotheses after each step, from 0),
     ``nodes``, ``maps_built``, ``final``, ``closed``, ``closed_text``, ``optimal``,
     ``perpendicular``. What was not counted is None."""
@@ -24,8 +30,15 @@ class Counts(Reply, Mapping[str, Any]):
         super().__init__(fault)
         self._figures = dict(figures)
 
-    def __getitem__(self, key: str) -> Any:
-        return self._figures[key]
+    @overload
+    def __getitem__(self, key: Literal["per_step"]) -> list[int]: ...
+    @overload
+    def __getitem__(self, key: Number) -> int | None: ...
+    @overload
+    def __getitem__(self, key: str) -> Figure: ...
+    def __getitem__(self, key: str) -> Figure:
+        figure: Figure = self._figures[key]
+        return figure
 
     def __iter__(self) -> Iterator[str]:
         return iter(self._figures)
@@ -69,9 +82,12 @@ def count(
         The figures.
 
     Raises:
-        ValueError: an unknown part.
+        TypeError: no experience.
+        ValueError: an unknown part or encoding, or a number that cannot be.
+        InputError: an experience that cannot be, one line that names step and fault.
     """
     query = query_of(parts, bound=bound, horizon=horizon, encoding=encoding, allowed=DEMANDS)
+    jobs = whole("jobs", jobs, 1)
     watch = begin(experience, timeout, None)
     with crew_of(jobs) as crew:
         return count_under(watch, experience, query, Journal(), crew)

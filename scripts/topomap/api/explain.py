@@ -5,7 +5,7 @@ from dataclasses import replace
 from typing import Any, Unpack
 
 from topomap.api.maps import Map
-from topomap.api.parts import Parts, begin, query_of
+from topomap.api.parts import Parts, begin, demand_text, query_of
 from topomap.model.experience import Experience
 from topomap.model.found import Found
 from topomap.model.query import Query
@@ -112,10 +112,14 @@ def explain(
         The verdict and the reasons; what was not found in time is said to be so.
 
     Raises:
+        TypeError: no experience, or a statement that is no text.
         ValueError: an unknown part, or a number that cannot be.
-        InputError: a text that is no statement about this experience; one line.
+        InputError: an experience that cannot be, or a text that is no statement about it; one
+            line.
     """
     query = query_of(parts, bound=bound, horizon=horizon, allowed=DEMANDS)
+    if statement is not None:
+        demand_text("statement", statement, "same(3,12)")
     return explain_under(begin(experience, timeout, None), experience, statement, query)
 
 

@@ -8,6 +8,7 @@ from topomap.api.answer import Answer
 from topomap.api.parts import Parts, begin, query_of
 from topomap.model.experience import Experience
 from topomap.model.found import Found
+from topomap.runtime.checks import flag, seconds, whole, whole_if_given
 from topomap.runtime.journal import Journal
 from topomap.runtime.watch import Deadline, Watch
 from topomap.solver.crews import crew as crew_of
@@ -54,18 +55,20 @@ def solve(
         The maps, as they are found.
 
     Raises:
-        ValueError: an unknown part, way or encoding, or what does not go together.
+        TypeError: no experience.
+        ValueError: an unknown part, way or encoding, a number that cannot be, or what does not go
+            together.
         InputError: an experience that cannot be, one line that names step and fault.
     """
     encoding = encoding or ("fast" if noise is None else "plain")
     query = query_of(parts, bound=bound, horizon=horizon, encoding=encoding, noise=noise)
-    if by not in WAYS:
+    if not isinstance(by, str) or by not in WAYS:
         raise ValueError(f"{by!r} is not one of the ways {', '.join(WAYS)}")
     if noise is not None and encoding != "plain":
         raise ValueError(f"encoding={encoding!r}: with noise it is plain")
-    if limit is not None and limit < 1:
-        raise ValueError(f"limit={limit}: it must be 1 or more")
-    minimises = optimal or query.optimizes
+    limit, jobs = whole_if_given("limit", limit, 1), whole("jobs", jobs, 1)
+    timeout = seconds("timeout", timeout)
+    minimises = flag("optimal", optimal) or query.optimizes
     if minimises and (jobs > 1 or (crew not in (None, ALONE))):
         raise ValueError("jobs: all maps are shared out, not the best ones")
     if noise is not None and by == "search":

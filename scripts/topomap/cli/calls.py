@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING, Any
 
 from topomap.model.vocabulary import OPTIMIZING, PARTS
 from topomap.runtime.errors import InputError, say
-from topomap.runtime.limits import MOST_PLACES
 
 if TYPE_CHECKING:
     from topomap.model.experience import Experience
@@ -59,8 +58,5 @@ def environment_of(args: argparse.Namespace) -> "Environment":
         for warning in warnings:
             say(f"warning: {warning}")
         return world
-    if args.rows * args.columns > MOST_PLACES:
-        size = f"{args.rows} x {args.columns}"
-        raise InputError(f"topomap {args.command}: {size}: more than {MOST_PLACES} places")
     thinned = {"thin": args.thin, "seed": args.seed or 0} if args.kind == "maze" else {}
     return environment.environment(args.kind, args.rows, args.columns, **thinned)

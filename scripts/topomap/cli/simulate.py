@@ -131,8 +131,8 @@ def _list(args: argparse.Namespace) -> int:
             for call, parsed, environment in calls:
                 watch.title(call)
                 made = _simulated(parsed, environment, watch)
-                if made.end not in ENDS:
-                    fault = made.end
+                if made.end not in ENDS or made.outcome.others.fault:
+                    fault = made.fault
                     break
                 rows.append({**made.json(), "environment": call})
         if any(row["end"] not in ENDED for row in rows):

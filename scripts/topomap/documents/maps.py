@@ -93,16 +93,22 @@ def parse_maps(content: str, path: str) -> list[Document]:
         raise InputError(
             f"{path}: not a JSON text, as topomap solve --json and clingo --outf=2 write it"
         ) from None
-    formats.demand(path, data)
+    return documents(path, data)
+
+
+def documents(where: str, data: Any) -> list[Document]:
+    """The maps in what was read from JSON: of one instance or of several, by topomap or clingo, or
+    a list of maps; ``where`` names it in errors. Raises InputError, one line."""
+    formats.demand(where, data)
     if isinstance(data, dict) and "Call" in data:
-        return [_of_clingo(path, data)]
-    documents = data["results"] if isinstance(data, dict) and "results" in data else [data]
-    if not isinstance(documents, list):
-        raise InputError(f"{path}: results: no list")
-    many = len(documents) > 1
+        return [_of_clingo(where, data)]
+    results = data["results"] if isinstance(data, dict) and "results" in data else [data]
+    if not isinstance(results, list):
+        raise InputError(f"{where}: results: no list")
+    many = len(results) > 1
     return [
-        document(f"{path}: result {number}" if many else path, one)
-        for number, one in enumerate(documents, 1)
+        document(f"{where}: result {number}" if many else where, one)
+        for number, one in enumerate(results, 1)
     ]
 
 
@@ -179,6 +185,11 @@ def _is_at(at: object) -> bool:
         isinstance(dstate, list) and len(dstate) == 3 and all(map(is_number, dstate))
         for dstate in at
     )
+
+
+def noisy(given: list[Document]) -> bool:
+    """Whether some of the maps are said to be allowed to disbelieve what was seen."""
+    return any(one.claims.get("noise") is not None for one in given)
 
 
 def of_instance(documents: list[Document], instance: str) -> list[Document]:

@@ -37,7 +37,8 @@ class Verdict:
 @dataclass(repr=False)
 class Judged(Reply):
     """The verdicts on ``count`` maps of an experience of ``steps`` steps, of which ``demands``
-    were asked; ``fault`` says why not all were judged, if so."""
+    were asked; ``fault`` says why not all were judged, if so. In an ``if`` it is true when all
+    were judged, and none is unsound."""
 
     count: int
     steps: int
@@ -49,6 +50,9 @@ class Judged(Reply):
     def unsound(self) -> list[Verdict]:
         """The verdicts on the maps with which something is wrong."""
         return [verdict for verdict in self.verdicts if not verdict.sound]
+
+    def __bool__(self) -> bool:
+        return self.complete and not self.unsound
 
     @property
     def short(self) -> int:

@@ -1,7 +1,9 @@
 """The maps among which the real one may be: those between which a further walk is to decide."""
 
+import difflib
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 
 from topomap.documents.beginnings import beginning
 from topomap.documents.maps import read_maps
@@ -112,9 +114,17 @@ def _of_kind(kind: str, whole: Experience, query: Query, watch: Watch) -> Iterab
     return (one.at for one in solving.hypotheses(whole, having, watch) if one is not None)
 
 
+def _misspelt(name: str) -> str | None:
+    """The kind of maps that was meant, if a name is nearly that of one, and of no file."""
+    near = difflib.get_close_matches(name[:20], PARTS_OF, 1, 0.8)
+    return near[0] if near and not Path(name).exists() else None
+
+
 def _of_file(path: str, whole: Experience, experience: Experience, watch: Watch) -> Iterator[At]:
     """The maps of a file, cut to the experience. Raises InputError if one is none of its
     hypotheses."""
+    if near := _misspelt(path):
+        raise InputError(f"{path}: no such file or directory; did you mean {near}?")
     documents = read_maps(path)
     if not any(document.maps for document in documents):
         raise InputError(f"{path}: no maps in it")
