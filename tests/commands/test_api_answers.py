@@ -149,7 +149,7 @@ def test_check_judges_maps(seen):
 
 
 def entries(answer):
-    return [one.json() for one in answer]
+    return [one.document() for one in answer]
 
 
 def tampered(answer):
@@ -191,12 +191,12 @@ def test_check_is_the_command(inside, tmp_path, case):
 
 def test_check_of_one_map(seen):
     one = topomap.solve(seen, optimal=True)[0]
-    for given in (one, one.json(), {"maps": [one]}, MappingProxyType(one.json())):
+    for given in (one, one.document(), {"maps": [one]}, MappingProxyType(one.document())):
         assert topomap.check(seen, given).count == 1
         assert topomap.check(seen, given)
-    said = {"maps": [one.json()], "kind": "optimal", "optimal": True, "cost": [5, 9]}
+    said = {"maps": [one.document()], "kind": "optimal", "optimal": True, "cost": [5, 9]}
     assert topomap.check(seen, said).unsound[0].faults == ["cost: it is [6, 9]"]
-    at = [tuple(map(numpy.int64, dstate)) for dstate in one.json()["at"]]
+    at = [tuple(map(numpy.int64, dstate)) for dstate in one.document()["at"]]
     assert topomap.check(seen, [{"at": at}, {"at": at[:3]}]).short == 1
 
 

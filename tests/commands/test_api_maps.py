@@ -233,7 +233,7 @@ def test_a_robot_comes_to_what_the_command_writes(topomap, world, asked, options
     made = elsewhere(lambda: simulate(*world, **asked))
     told = json.loads(topomap("simulate", *world, *options, "--json").stdout)
     assert told.pop("format") == 1
-    assert told == {**made.json(), "complete": made.complete, "fault": made.fault}
+    assert told == {**made.document(), "complete": made.complete, "fault": made.fault}
     assert topomap("simulate", *world, *options).stdout == str(made)
     assert (made.end, made.steps, made.truth) == (told["end"], told["steps"], told["truth"])
     assert (made.tour, made.random) == (told["tour"], told["random"])
@@ -284,7 +284,7 @@ def test_others_that_are_cut_say_so(most):
     assert (whole.fault, whole.tour) == (None, 28)
     made = Outcome(world, ((0, 0), 1), SEEN, (), "settled", True, cut, True)
     assert made.fault == "timeout"
-    assert made.json()["tour"] == cut.tour
+    assert made.document()["tour"] == cut.tour
 
 
 def test_a_world_that_is_too_large():
@@ -333,7 +333,7 @@ def test_an_experience_is_kept_plain():
     )
     assert numbers == topomap.Experience(4, [[0, 1], [0, 1]], [1], drops=[0])
     assert {type(slot) for view in numbers.views for slot in view} == {int}
-    assert json.dumps(topomap.solve(numbers)[0].json())
+    assert json.dumps(topomap.solve(numbers)[0].document())
 
 
 @pytest.mark.parametrize(

@@ -80,9 +80,9 @@ class Simulation:
         walks for comparison did, too."""
         return self.fault is None
 
-    def json(self) -> dict[str, Any]:
+    def document(self) -> dict[str, Any]:
         """The same as ``topomap simulate --json`` writes it, but for its format and its end."""
-        return {"environment": self.name, **self.outcome.json()}
+        return {"environment": self.name, **self.outcome.document()}
 
     def __str__(self) -> str:
         """The lines that ``topomap simulate`` prints."""

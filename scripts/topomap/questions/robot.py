@@ -87,7 +87,7 @@ class Outcome:
         """Whether it came to one closed map, which is the truth."""
         return self.end == "settled" and bool(self.truth)
 
-    def json(self) -> dict[str, Any]:
+    def document(self) -> dict[str, Any]:
         """What is told of it."""
         return {
             "places": len(self.world.stars),
