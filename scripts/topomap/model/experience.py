@@ -1,7 +1,7 @@
 """Experiences: what an exploration does and sees."""
 
 from collections.abc import Container, Iterable
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, fields
 
 from topomap.model.terms import spelt
 from topomap.model.topology import Gateway, Place, TopologicalMap
@@ -60,14 +60,14 @@ class Experience:
             TypeError: something else where a collection is wanted, such as a text.
         """
         seen = tuple(
-            frozenset(_slots(f"views[{step}]", view))
+            frozenset(view if _is_plain(view, int) else _slots(f"views[{step}]", view))
             for step, view in enumerate(collection("views", views))
         )
         done = tuple(_slots("turns", turns))
         signs = (frozenset[str](),) * len(seen)
         if landmarks is not None:
             signs = tuple(
-                _terms(f"landmarks[{step}]", of)
+                frozenset(of) if _is_plain(of) else _terms(f"landmarks[{step}]", of)
                 for step, of in enumerate(collection("landmarks", landmarks))
             )
         if not len(done) + 1 == len(seen) == len(signs):
@@ -89,16 +89,24 @@ class Experience:
 
     def cut(self, horizon: int) -> "Experience":
         """The experience up to and including step ``horizon``."""
-        return Experience(
-            self.slots,
-            self.views[: horizon + 1],
-            self.turns[:horizon],
-            self.landmarks[: horizon + 1],
-            *(
-                frozenset(step for step in steps if step <= horizon)
-                for steps in (self.drops, self.picks, self.markers)
-            ),
+        marks = {
+            name: frozenset(step for step in getattr(self, name) if step <= horizon)
+            for name in ("drops", "picks", "markers")
+        }
+        return self._but(
+            views=self.views[: horizon + 1],
+            turns=self.turns[:horizon],
+            landmarks=self.landmarks[: horizon + 1],
+            **marks,
         )
+
+    def _but(self, **changed: object) -> "Experience":
+        """The same experience but for what is changed, which is known to be plain: it is not
+        checked again, as this is done for each map that is told."""
+        made = object.__new__(Experience)
+        for one in fields(self):
+            object.__setattr__(made, one.name, changed.get(one.name, getattr(self, one.name)))
+        return made
 
     def marker(self) -> tuple[tuple[int, bool] | None, ...]:
         """For each step at whose end the marker lies somewhere: after which step it was put
@@ -122,7 +130,7 @@ class Experience:
                 views[step] ^= {what}
             else:
                 landmarks[step] ^= {what}
-        return replace(self, views=tuple(views), landmarks=tuple(landmarks))
+        return self._but(views=tuple(views), landmarks=tuple(landmarks))
 
     def misled(self) -> list[int]:
         """The steps after which the agent stands at no gateway, or leaves by none, according to
@@ -152,6 +160,11 @@ class Experience:
             links[out], links[arrival] = arrival, out
         landmarks = {place: self.landmarks[place] for place in stars}
         return TopologicalMap(self.slots, stars, links, landmarks)
+
+
+def _is_plain(given: object, *kinds: type) -> bool:
+    """Whether something is a frozen set of these types and no others already: most are."""
+    return type(given) is frozenset and {*map(type, given)} <= {*kinds}
 
 
 def _slots(name: str, given: Iterable[int]) -> list[int]:
