@@ -10,11 +10,13 @@ The functions and classes below are the public ones; each is loaded when it is f
 is in the packages beside them may change without notice: docs/DEVELOPMENT.md walks through them.
 """
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
+from topomap.runtime.lazy import loader
 from topomap.runtime.version import VERSION as __version__
 
 if TYPE_CHECKING:
+    from topomap.api.answer import Answer
     from topomap.api.ask import ask
     from topomap.api.check import check
     from topomap.api.count import count
@@ -25,13 +27,13 @@ if TYPE_CHECKING:
     from topomap.api.maps import Map
     from topomap.api.read import read
     from topomap.api.simulate import simulate
-    from topomap.api.solve import Answer, solve
+    from topomap.api.solve import solve
     from topomap.api.validate import validate
     from topomap.model.experience import Experience
     from topomap.runtime.errors import InputError
 
 _WHERE = {
-    "Answer": "api.solve",
+    "Answer": "api.answer",
     "Experience": "model.experience",
     "InputError": "runtime.errors",
     "Map": "api.maps",
@@ -66,15 +68,8 @@ __all__ = [
     "validate",
 ]
 
-
-def __getattr__(name: str) -> Any:
-    if name not in _WHERE:
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    from importlib import import_module
-
-    value = getattr(import_module(f"topomap.{_WHERE[name]}"), name)
-    globals()[name] = value
-    return value
+if not TYPE_CHECKING:  # a checker of types would take any name for one of these
+    __getattr__ = loader(__name__, _WHERE)
 
 
 def __dir__() -> list[str]:

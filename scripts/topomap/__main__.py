@@ -20,6 +20,8 @@ def run() -> None:
         signal.signal(number, _stop)
     _open_streams()
     sys.unraisablehook = _note
+    # For numpy: OpenBLAS would wait without end for memory that is not there. One thread will do.
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     from topomap.cli import main
 
     try:

@@ -62,7 +62,7 @@ def statement(draw, experience):
 
 def settled(experience, texts, query=ANY, optimal=False):
     """What the command finds."""
-    answers = Inquiry([statements.parse(text, experience, "ask") for text in texts])
+    answers = Inquiry([statements.parse_statement(text, experience, "ask") for text in texts])
     answers.settle(experience, query, optimal, Watch())
     return answers
 
@@ -310,7 +310,7 @@ def test_a_bad_statement_ends_the_command(topomap, tmp_path):
 def refused(text, experience):
     """Why a text is no statement, or None."""
     try:
-        statements.parse(text, experience, "ask")
+        statements.parse_statement(text, experience, "ask")
     except InputError as fault:
         return str(fault)
     return None
@@ -346,8 +346,8 @@ def test_any_text_is_a_statement_or_is_refused_in_one_line():
         fault = refused(text, experience)
         if fault is None:
             accepted += 1
-            made = statements.parse(text, experience, "ask")
-            assert statements.parse(made.text, experience, "ask") == made
+            made = statements.parse_statement(text, experience, "ask")
+            assert statements.parse_statement(made.text, experience, "ask") == made
             assert str(clingo.parse_term(made.term)) == made.term
         else:
             assert re.fullmatch('ask: ".{3,300}', fault)
@@ -369,7 +369,7 @@ class Impatient(Watch):
 def test_what_is_not_settled_says_so():
     experience = GRIDS["3x3-snake"]
     texts = ["same(0,16)", "not same(0,16)", "planar", "places >= 1"]
-    answers = Inquiry([statements.parse(text, experience, "ask") for text in texts])
+    answers = Inquiry([statements.parse_statement(text, experience, "ask") for text in texts])
     assert {answer.words() for answer in answers.each} == {"not settled"}
     with pytest.raises(Stopped):
         answers.settle(experience, Query(), False, Impatient(1))

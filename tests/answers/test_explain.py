@@ -15,7 +15,7 @@ from oracles.broken_rules import Assignment, assignments, reasons
 from oracles.worlds import random_experience
 from topomap import cli
 from topomap.model.facts import parse, read
-from topomap.questions.reasons import KINDS, told_marker
+from topomap.questions.reasons import RULE_NAMES, told_marker
 
 MOST = 2500  # assignments that are tried by brute force
 LASTING = ("same", "at")
@@ -343,7 +343,7 @@ def test_each_reason_has_words():
     ]
     named = {name for text in texts for name in re.findall(r"^broken\((\w+)", text, re.MULTILINE)}
     assert named >= {"view", "schema", "planar", "euler", "bound", "closed"}
-    assert named <= {*KINDS}
+    assert named <= {*RULE_NAMES}
 
 
 @pytest.mark.parametrize(

@@ -5,7 +5,9 @@ import subprocess
 import sys
 import threading
 from itertools import islice
+from types import MappingProxyType
 
+import numpy
 import pytest
 import topomap
 from conftest import COLUMNS, ROOT, answers
@@ -54,12 +56,6 @@ def test_maps_come_as_they_are_found():
     assert len(set(first)) == 3
 
 
-def test_the_stream_keeps_nothing(seen):
-    answer = topomap.solve(seen)
-    assert len({one.at for one in answer.stream()}) == 88
-    assert (answer.complete, [*answer]) == (True, [])
-
-
 def test_the_best_are_proved(seen):
     best = topomap.solve(seen, optimal=True)
     assert (len(best), best.kind, best.cost, best.proved) == (2, "optimal", (6, 9), True)
@@ -86,7 +82,8 @@ def test_what_solve_refuses(seen):
         ({"by": "magic"}, "'magic' is not one of the ways clingo, search"),
         ({"encoding": "slow"}, "encoding='slow'"),
         ({"noise": 1, "by": "search"}, "noise does not go with"),
-        ({"noise": 1, "encoding": "fast"}, "with noise it is plain"),
+        ({"noise": 1, "encoding": "paper"}, "does not go with noise"),
+        ({"genus": True, "encoding": "paper"}, "does not state genus"),
         ({"limit": 0}, "limit=0"),
         ({"optimal": True, "jobs": 2}, "not the best ones"),
     ):
@@ -146,10 +143,92 @@ def test_check_judges_maps(seen):
     judged = topomap.check(seen, maps, planar=True)
     assert (judged.count, len(judged.unsound), judged.complete) == (4, 1, True)
     wrong = {"at": [[step, 0, 0] for step in range(seen.steps + 1)]}
-    assert topomap.check(seen, [maps[0], maps[1].json(), wrong]).unsound
-    assert not topomap.check(seen, [maps[0], maps[1].json()]).unsound
+    assert topomap.check(seen, [maps[0], maps[1].document(), wrong]).unsound
+    assert not topomap.check(seen, [maps[0], maps[1].document()]).unsound
     with pytest.raises(ValueError, match="genus"):
         topomap.check(seen, maps, genus=True)
+
+
+def entries(answer):
+    return [one.document() for one in answer]
+
+
+def tampered(answer):
+    (one, *_) = entries(answer)
+    return [{**one, "genus": 7, "links": [], "faces": [], "places": [], "paths": []}]
+
+
+NOISY = "instances/grid-3x3-misread.lp"
+DISBELIEVED = {"optimal": True, "planar": True, "noise": 1}
+JUDGED = {  # what is judged, of which maps, with which options; and how many of it are unsound
+    "maps": (GRID, {"closed": True}, entries, {"planar": True}, 1),
+    "noisy": (NOISY, DISBELIEVED, entries, {"noise": 1}, 0),
+    "noise that is not allowed": (NOISY, DISBELIEVED, entries, {"noise": 0}, 1),
+    "tampered": (GRID, {"optimal": True}, tampered, {}, 1),
+    "doubled": (GRID, {"optimal": True}, lambda answer: entries(answer) * 2, {}, 2),
+    "more keys": (GRID, {"optimal": True}, lambda a: [{**e, "x": 1} for e in entries(a)], {}, 2),
+    "real": (GRID, {"optimal": True}, lambda a: [{**e, "real": True} for e in entries(a)], {}, 2),
+}
+
+
+@pytest.mark.parametrize("case", JUDGED)
+def test_check_is_the_command(inside, tmp_path, case):
+    instance, asked, made, options, unsound = JUDGED[case]
+    seen = topomap.read(ROOT / instance, noisy="noise" in asked)
+    answer = topomap.solve(seen, **asked)
+    maps, file = made(answer), tmp_path / "maps.json"
+    file.write_text(json.dumps({"maps": maps}))
+    flags = [f"--{key}" if value is True else f"--{key}={value}" for key, value in options.items()]
+    told = json.loads(inside("check", instance, file, *flags, "--json").stdout)
+    given = [maps, (one for one in maps), {"maps": maps}, file, str(file)]
+    if made is entries:
+        given += [answer, [*answer]]
+    for one in given:
+        judged = topomap.check(seen, one, **options)
+        ours = json.loads(json.dumps(judged.document()).replace('"maps: ', f'"{file}: '))
+        assert ours == {key: told[key] for key in ours}
+        assert (len(judged.unsound), bool(judged)) == (unsound, unsound == 0)
+
+
+def test_check_of_one_map(seen):
+    one = topomap.solve(seen, optimal=True)[0]
+    for given in (one, one.document(), {"maps": [one]}, MappingProxyType(one.document())):
+        assert topomap.check(seen, given).count == 1
+        assert topomap.check(seen, given)
+    said = {"maps": [one.document()], "kind": "optimal", "optimal": True, "cost": [5, 9]}
+    assert topomap.check(seen, said).unsound[0].faults == ["cost: it is [6, 9]"]
+    at = [tuple(map(numpy.int64, dstate)) for dstate in one.document()["at"]]
+    assert topomap.check(seen, [{"at": at}, {"at": at[:3]}]).short == 1
+
+
+def test_a_check_that_is_cut_is_not_taken_for_sound(seen):
+    judged = topomap.check(seen, topomap.solve(seen), timeout=0)
+    assert (judged.fault, judged.unsound, bool(judged)) == ("timeout", [], False)
+
+
+@pytest.mark.parametrize(
+    ("maps", "error", "fault"),
+    [
+        (["x"], topomap.InputError, "maps: map 1: a Map, or a dictionary with the key at, is wa"),
+        ([{"at": []}, {}], topomap.InputError, r"maps: map 2: at is not a list \[\[T,P,S\]"),
+        ([{"at": [1, 2]}], topomap.InputError, "maps: map 1: at is not a list"),
+        ([{"at": None}], topomap.InputError, "maps: map 1: at is not a list"),
+        ([{"at": [[0, 0, 0.5]]}], topomap.InputError, "maps: map 1: at is not a list"),
+        ([{"at": [], "x": {1, 2}}], topomap.InputError, "maps: map 1: not what JSON can hold"),
+        ({"maps": 5}, topomap.InputError, "maps: no maps in it"),
+        ({}, topomap.InputError, "maps: no maps in it"),
+        ("none.json", topomap.InputError, "none.json: no such file"),
+        (None, TypeError, "maps: a Map, a dictionary, the path of a file .*, not None"),
+        (5, TypeError, "maps: a Map, a dictionary"),
+        (b"x", TypeError, "maps: a Map, a dictionary"),
+    ],
+)
+def test_what_check_refuses(seen, maps, error, fault):
+    with pytest.raises(error, match=fault) as told:
+        topomap.check(seen, maps)
+    assert "\n" not in str(told.value)
+    with pytest.raises(TypeError, match="truth: a TopologicalMap is wanted"):
+        topomap.check(seen, [], truth="x")
 
 
 def test_validate_is_the_command(inside, tmp_path):
@@ -160,6 +239,7 @@ def test_validate_is_the_command(inside, tmp_path):
         (told,) = json.loads(inside("validate", file, "--json").stdout)["files"]
         assert judged.document() == told
         assert str(judged) + "\n" == inside("validate", file).stdout
+        assert bool(judged) == judged.valid == (file != bad)
     assert topomap.validate(bad).faults[0]["line"] == 2
     with pytest.raises(topomap.InputError, match="did you mean view/2"):
         topomap.read(bad)

@@ -2,9 +2,11 @@
 
 import json
 import threading
+import time
 from itertools import pairwise
 
 import networkx as nx
+import numpy
 import pytest
 import topomap
 from conftest import ROOT
@@ -19,10 +21,12 @@ from topomap.model.experience import Experience
 from topomap.model.facts import read
 from topomap.model.found import UNPROVED, Found
 from topomap.model.query import Query
+from topomap.questions.robot import Outcome, others
 from topomap.runtime import extras
 from topomap.runtime.errors import InputError
-from topomap.runtime.watch import Watch
+from topomap.runtime.watch import Stopped, Watch
 from topomap.solver import solving
+from topomap.worlds.environment import environment
 
 GRID = "instances/grid-3x3-snake.lp"
 SEEN = read(ROOT / GRID)
@@ -71,7 +75,7 @@ def test_the_properties_are_what_solve_writes(made, topomap):
     assert len(answer["maps"]) == len(made) > 1
     by_route = {json.dumps(entry["at"]): entry for entry in answer["maps"]}
     for one in made:
-        told = one.json()
+        told = one.document()
         entry = by_route.pop(json.dumps(told["at"]))
         assert told == entry
         assert [[t, *dstate] for t, dstate in enumerate(one.at)] == entry["at"]
@@ -100,10 +104,10 @@ def test_what_was_misread_is_told():
     seen = Experience(2, (end, end, end), (0, 0), (frozenset(),) * 3)
     at = ((0, 0), (1, 0), (0, 0))
     sure = Map(seen, Found(at, "consistent"), noisy=True)
-    assert (sure.misread, sure.json()["misread"]) == ((), [])
+    assert (sure.misread, sure.document()["misread"]) == ((), [])
     assert sure.places == {0: [0], 1: [0]}
     wrong = Map(seen, Found(at, "best", (1, 1), misread=((1, 1),)))
-    assert wrong.json()["misread"] == [{"step": 1, "gateway": 1, "seen": False}]
+    assert wrong.document()["misread"] == [{"step": 1, "gateway": 1, "seen": False}]
     assert wrong.places == {0: [0], 1: [0, 1]}
     assert wrong.pending == [(1, 1)]
     assert "disbelieves step 1 (gateway 1 missed); places 2" in str(wrong)
@@ -132,7 +136,7 @@ def test_the_graph_is_what_export_writes(topomap, tmp_path):
     numbers = [entry["at"] for entry in json.loads(maps.read_text())["maps"]]
     for number in range(len(numbers)):
         one = closed(number)
-        nth = numbers.index(one.json()["at"]) + 1
+        nth = numbers.index(one.document()["at"]) + 1
         done = topomap("export", maps, "--map", nth, "--format", "json", "-o", file)
         assert done.returncode == 0
         written = nx.node_link_graph(json.loads(file.read_text()), edges="edges")
@@ -141,7 +145,7 @@ def test_the_graph_is_what_export_writes(topomap, tmp_path):
         assert plain(list(ours.nodes(data=True))) == plain(list(written.nodes(data=True)))
         edges = [plain(list(graph.edges(keys=True, data=True))) for graph in (ours, written)]
         assert edges[0] == edges[1]
-        assert json.loads(import_map(str(file)))["maps"] == [one.json()]
+        assert json.loads(import_map(str(file)))["maps"] == [one.document()]
 
 
 def test_a_map_that_was_found_does_not_say_how_many_there_are():
@@ -156,7 +160,9 @@ def test_maps_with_wrong_views_say_which(topomap):
     """Also where none is wrong."""
     told = json.loads(topomap("solve", GRID, "--noise", 0, "--closed", "--json").stdout)["maps"]
     made = solve(SEEN, noise=0, closed=True)
-    assert [one.json() for one in sorted(made, key=by_at)] == sorted(told, key=lambda m: m["at"])
+    assert [one.document() for one in sorted(made, key=by_at)] == sorted(
+        told, key=lambda m: m["at"]
+    )
     assert {"misread"} <= set(told[0])
 
 
@@ -227,7 +233,7 @@ def test_a_robot_comes_to_what_the_command_writes(topomap, world, asked, options
     made = elsewhere(lambda: simulate(*world, **asked))
     told = json.loads(topomap("simulate", *world, *options, "--json").stdout)
     assert told.pop("format") == 1
-    assert told == {**made.json(), "complete": made.complete, "fault": made.fault}
+    assert told == {**made.document(), "complete": made.complete, "fault": made.fault}
     assert topomap("simulate", *world, *options).stdout == str(made)
     assert (made.end, made.steps, made.truth) == (told["end"], told["steps"], told["truth"])
     assert (made.tour, made.random) == (told["tour"], told["random"])
@@ -239,6 +245,55 @@ def test_a_robot_comes_to_what_the_command_writes(topomap, world, asked, options
 def test_a_robot_that_is_stopped_says_so():
     made = simulate("grid", 4, 4, timeout=1e-9)
     assert (made.complete, made.fault, made.truth) == (False, "timeout", None)
+
+
+def test_a_time_limit_is_for_the_walks_of_others_too():
+    """A tour of so many places, and random walks over them, take far longer than this."""
+    begun = time.monotonic()
+    made = simulate("grid", 60, 60, timeout=0.5)
+    assert time.monotonic() - begun < 30  # without the limit: minutes
+    assert (made.complete, made.fault, made.tour, made.random) == (False, "timeout", None, None)
+    assert str(made).endswith(
+        "a tour over every way, by one who knows the map: not known; partial: timeout\n"
+        "a random walk over every way (median): not known; partial: timeout\n"
+    )
+
+
+class Ticks(Watch):
+    """A watch that stops the work when it is looked at for the so many-th time."""
+
+    def __init__(self, most):
+        super().__init__()
+        self.left = most
+
+    def tick(self):
+        self.left -= 1
+        if self.left < 0:
+            raise Stopped("timeout")
+
+
+@pytest.mark.parametrize("most", [0, 1, 20, 40])
+def test_others_that_are_cut_say_so(most):
+    """At once, in the pairing of places, between two random walks, and in one."""
+    world = environment("grid", 4, 4).map
+    cut, whole = others(world, (0, 0), Ticks(most)), others(world, (0, 0), Watch())
+    assert cut.fault == "timeout"
+    assert cut.random is None
+    assert cut.tour in (None, whole.tour)
+    assert (most == 0) <= (cut.tour is None)
+    assert (whole.fault, whole.tour) == (None, 28)
+    made = Outcome(world, ((0, 0), 1), SEEN, (), "settled", True, cut, True)
+    assert made.fault == "timeout"
+    assert made.document()["tour"] == cut.tour
+
+
+def test_a_world_that_is_too_large():
+    for make in (simulate, lambda *world: topomap.generate(*world, route="tour")):
+        with pytest.raises(InputError, match="grid 400 x 400: more than 100000 places"):
+            make("grid", 400, 400)
+    with pytest.raises(InputError, match="a tour: 1798 places have an odd number of ways, more"):
+        topomap.generate("hexagons", 30, 30, route="tour")
+    assert others(environment("hexagons", 30, 30).map, (0, 0), Watch(0)).tour is None
 
 
 def test_a_robot_is_not_sent_into_nothing():
@@ -267,12 +322,56 @@ def test_an_experience_is_made_of_lists():
             topomap.Experience(4, views, turns, landmarks)
 
 
+def test_an_experience_is_kept_plain():
+    """Both ways to an answer see the same landmarks, and JSON can hold the numbers."""
+    signs = [["f(1,2)"], ["b"], ["f(1, 2)"]]
+    spelt = topomap.Experience(4, [[0], [0], [0]], [0, 0], signs)
+    assert spelt.landmarks[0] == spelt.landmarks[2] == {"f(1,2)"}
+    assert [len(topomap.solve(spelt, by=by)) for by in ("clingo", "search")] == [1, 1]
+    numbers = topomap.Experience(
+        numpy.int64(4), numpy.array([[0, 1], [0, 1]]), numpy.array([1]), drops=numpy.array([0])
+    )
+    assert numbers == topomap.Experience(4, [[0, 1], [0, 1]], [1], drops=[0])
+    assert {type(slot) for view in numbers.views for slot in view} == {int}
+    assert json.dumps(topomap.solve(numbers)[0].document())
+
+
+@pytest.mark.parametrize(
+    ("arguments", "error", "fault"),
+    [
+        (("4", [[0]], []), ValueError, "slots='4': a whole number is wanted"),
+        ((4.0, [[0]], []), ValueError, r"slots=4\.0"),
+        ((True, [[0]], []), ValueError, "slots=True"),
+        ((4, [["0", "1"]], []), ValueError, r"views\[0\]: slot='0'"),
+        ((4, ["01"], []), TypeError, r"views\[0\]: a collection is wanted, .*, not '01'"),
+        ((4, [0, 0], [0]), TypeError, r"views\[0\]: a collection is wanted, .*, not 0"),
+        ((4, [[0], [0]], None), TypeError, "turns: a collection is wanted, .*, not None"),
+        ((4, [[0], [0]], [False]), ValueError, "turns: slot=False"),
+        ((4, [[0], [0]], [0], ["pub", "bar"]), TypeError, r"landmarks\[0\]: .*, not 'pub'"),
+        ((4, [[0]], [], [["The Pub"]]), ValueError, "'The Pub' is not a ground term"),
+        ((4, [[0]], [], [["a). view(0,1"]]), ValueError, "is not a ground term"),
+        ((4, [[0]], [], [["a,b"]]), ValueError, "is not a (plain|ground) term"),
+        ((4, [[0]], [], [["1+1"]]), ValueError, "is not a plain term: clingo reads it as 2"),
+        ((4, [[0]], [], [["(" * 9999]]), ValueError, "is nested deeper than 100"),
+        ((4, [[0]], [], [["\ud800"]]), ValueError, "is not a ground term"),
+        ((4, [[0]], [], [["a\0"]]), ValueError, "is not a (plain|ground) term"),
+        ((4, [[0]], [], [[5]]), ValueError, r"landmarks\[0\]: 5 is not a text"),
+        ((4, [[0], [0]], [0], None, [99]), ValueError, "drops: step=99: .* from 0 to 1"),
+        ((4, [[0], [0]], [0], None, [], [], "1"), TypeError, "markers: a collection is wanted"),
+    ],
+)
+def test_what_no_experience_is_made_of(arguments, error, fault):
+    with pytest.raises(error, match=fault):
+        topomap.Experience(*arguments)
+
+
 @pytest.mark.parametrize(
     ("experience", "fault"),
     [
         (topomap.Experience(4, [[0], [0]], [1]), "step 1: turn 1: no gateway there"),
         (topomap.Experience(5, [[0]], []), r"slots\(5\): K must be even"),
-        (topomap.Experience(4, [[0]], [], [["The Pub"]]), "is not a ground fact"),
+        (topomap.Experience(4, [[0, 7]], []), r"step 0: slot 7 is not in 0\.\.3"),
+        (topomap.Experience(4, [[0], [0]], [0], picks=[1]), "step 1: the marker is taken up, but"),
     ],
 )
 def test_an_experience_that_cannot_be_is_refused(experience, fault):

@@ -5,6 +5,7 @@ import threading
 
 import pytest
 import topomap
+import topomap.api
 from conftest import ROOT
 from topomap.api.explore import candidates, check_proofs
 from topomap.cli import main
@@ -45,6 +46,24 @@ def same(answer, command, instance):
     return json.loads(json.dumps(ours)) == command
 
 
+def test_replies_tell_what_they_come_to(seen):
+    snake = seen(SNAKE)
+    asked = topomap.ask(snake, "planar", "same(3,12)")
+    assert repr(asked) == "<StatementAnswers: planar: some; same(3,12): none>"
+    explained = topomap.explain(snake, "same(3,12)")
+    assert repr(explained) == f"<Explained: {str(explained).splitlines()[0]}>"
+    cut = topomap.explain(seen(LARGE), "same(3,12)", timeout=SOON)
+    assert repr(cut) == "<Explained: same(3,12): not settled, partial: timeout>"
+
+
+def test_the_classes_of_replies_can_be_imported():
+    assert dir(topomap.api) == sorted(topomap.api.__all__)
+    for name in topomap.api.__all__:
+        assert isinstance(getattr(topomap.api, name), type)
+    with pytest.raises(AttributeError, match="no attribute 'fly'"):
+        _ = topomap.api.fly
+
+
 def in_a_thread(work):
     """What some work gives, in a thread that is not the main one."""
     found, faults = [], []
@@ -71,9 +90,9 @@ def in_a_thread(work):
         ([], {}),
         (["--optimal"], {"optimal": True}),
         (["--planar", "--horizon", "14"], {"planar": True, "horizon": 14}),
-        (["--minimal", "--encoding", "plain"], {"minimal": True, "encoding": "plain"}),
+        (["--minimal"], {"minimal": True}),
     ],
-    ids=["all", "optimal", "parts", "plain"],
+    ids=["all", "optimal", "parts", "best"],
 )
 def test_ask_is_the_command(told, seen, options, parts):
     statements = "same(3,12)", "places < 12", "not planar", "linked(3,2,12,0)"
@@ -85,7 +104,7 @@ def test_ask_is_the_command(told, seen, options, parts):
     for one, other in zip(answers, command["statements"], strict=True):
         assert one.holds == other["holds"]
         for ours, theirs in (one.witness, other["witness"]), (one.counter, other["counter"]):
-            assert (ours and ours.json()) == theirs
+            assert (ours and ours.document()) == theirs
     assert {one.holds for one in answers} <= {"all", "some", "none"}
     assert answers.kind == command["kind"]
     assert list(answers.cost) == command["cost"]
@@ -113,8 +132,6 @@ def test_what_ask_refuses(seen):
         topomap.ask(seen(SNAKE), "planar", planer=True)
     with pytest.raises(ValueError, match="a statement is wanted"):
         topomap.ask(seen(SNAKE))
-    with pytest.raises(ValueError, match="encoding='slow'"):
-        topomap.ask(seen(SNAKE), "planar", encoding="slow")
     with pytest.raises(ValueError, match="bound=0"):
         topomap.ask(seen(SNAKE), "planar", bound=0)
     with pytest.raises(InputError, match="step 40: the experience has 16 steps"):

@@ -208,7 +208,7 @@ def evidence():
 def test_the_pages_show_the_committed_reports():
     text = evidence()
     beyond = json.loads((ROOT / "docs/beyond.json").read_text())["rows"]
-    assert f"```text\n{figure4.text(beyond)}\n```" in text
+    assert f"```text\n{figure4.table_text(beyond)}\n```" in text
     assert [row["environment"] for row in beyond if not row["clingo"]] == ["5x5"]
     assert not any(map(figure4.differences, beyond))
     (total,) = re.findall(r"^\| all \|(.*)\|$", (ROOT / "docs/mutation.md").read_text(), re.M)

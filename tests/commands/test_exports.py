@@ -589,5 +589,5 @@ def test_too_little_memory_is_said_at_once(tmp_path, call, megabytes):
 )
 def test_a_line_break_in_a_name_breaks_no_title(form, title):
     scene = replace(optimal("grid-3x3-snake")[1][0], name="a\nb", whole=True)
-    assert exports.FORMATS[form](scene).count(title) == 1
+    assert exports.WRITERS[form](scene).count(title) == 1
     assert scene.title.count("\n") == 1

@@ -8,9 +8,10 @@ import pytest
 from conftest import ROOT, SHARED, answers, run
 from topomap.model.facts import parse
 from topomap.runtime.errors import InputError
-from topomap.worlds.environment import grid, lattice, maze
+from topomap.worlds.environment import environment, grid, lattice, maze
 from topomap.worlds.instance import instance
-from topomap.worlds.route import COMPASS, letters, snake, tour
+from topomap.worlds.route import COMPASS, letters, snake
+from topomap.worlds.tours import tour
 
 
 def compass(route):
@@ -88,6 +89,25 @@ def test_signs_are_drawn_as_promised():
     drawn = random.Random(4).sample(sorted(made.map.stars), round(0.3 * 25))
     assert set(made.map.landmarks) == set(drawn)
     assert made.map.landmarks[drawn[0]] == {f"({drawn[0][0]},{drawn[0][1]})"}
+
+
+@pytest.mark.parametrize("seed", range(30))
+def test_a_tour_is_that_of_networkx(seed):
+    """Its own way to double ways, which can be ended, doubles the same ones."""
+    draw = random.Random(seed)
+    kind = draw.choice(["grid", "torus", "cylinder", "maze", "hexagons", "triangles"])
+    size = draw.randint(2, 6), draw.randint(2, 6)
+    made = environment(kind, *size, thin=draw.random(), seed=seed).map
+    graph = nx.MultiGraph()
+    graph.add_nodes_from(made.stars)
+    for a, b in sorted(made.edges()):
+        graph.add_edge(a[0], b[0], key=a)
+    start = draw.choice(sorted(made.stars))
+    places = [start]
+    for slot in tour(made, start):
+        places.append(made.links[places[-1], slot][0])
+    circuit = nx.eulerian_circuit(nx.eulerize(graph), source=start)
+    assert [start, *(there for _, there in circuit)] == places
 
 
 @pytest.mark.parametrize(

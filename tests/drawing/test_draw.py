@@ -22,7 +22,7 @@ from oracles.worlds import WORLDS, random_experience
 from topomap.api.draw import FORMATS
 from topomap.drawing import panel, sheet
 from topomap.drawing.layout import layout
-from topomap.drawing.planarize import lacking, planar_part, routed
+from topomap.drawing.planarize import left_out, planar_part, routed
 from topomap.drawing.scenes import Scene
 from topomap.model import words
 from topomap.model.facts import read
@@ -63,7 +63,7 @@ def lines_of(scene):
     """The lines in the picture of a map: of each gateway the one that leaves by it, y upwards;
     and the identifiers of all that is drawn."""
     file = BytesIO()
-    sheet.save(sheet.picture([scene]), file, "svg")
+    sheet.write(sheet.picture([scene]), file, "svg")
     groups = ElementTree.fromstring(file.getvalue()).iter("{http://www.w3.org/2000/svg}g")
     drawn = {group.get("id"): group for group in groups if group.get("id")}
     lines = {}
@@ -182,7 +182,7 @@ def check(scene):
     world = scene.world
     lines, drawn = lines_of(scene)
     part = planar_part(world)
-    further = lacking(part, world)
+    further = left_out(part, world)
     assert set(lines) == set(world.gateways())
     assert len([name for name in drawn if name.startswith("crossing-")]) == len(further)
     assert bool(further) == (world.genus() > 0)
@@ -244,7 +244,7 @@ def test_a_link_crosses_as_few_as_can_be(number):
     shortest way from face to face, those before it led."""
     world = some_map(number).world
     part = planar_part(world)
-    further = lacking(part, world)
+    further = left_out(part, world)
     whole, between = routed(part, further)
     assert whole.genus() == 0
     links = {}

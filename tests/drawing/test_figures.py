@@ -58,7 +58,7 @@ def test_maps_that_can_be_told_apart():
         experience = read(ROOT / f"instances/grid-{size}x{size}-snake.lp")
         made = instance(grid(size, size), "snake")
         real = experience.map_of(made.truth)
-        optimal = figures.best(experience, QUIET)
+        optimal = figures.best_scenes(experience, QUIET)
         pairs = [(scene.world, scene.at[-1]) for scene in optimal]
         same = [world.indistinguishable(at, real, made.truth[-1]) for world, at in pairs]
         assert sorted(not one for one in same) == told

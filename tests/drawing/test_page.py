@@ -27,7 +27,7 @@ from topomap.drawing.scenes import Scene
 from topomap.model import words
 from topomap.model.facts import parse, read
 from topomap.model.query import Query
-from topomap.page.exploration import Exploration
+from topomap.page.chapter import Chapter
 from topomap.page.replay import SHOWN, fate, replay
 from topomap.page.report import FOLDER
 from topomap.runtime.watch import Watch
@@ -342,7 +342,7 @@ def clockwise(drawn, world, place):
 )
 def test_drawings_are_of_the_maps(name):
     seen = read(ROOT / name).cut(12)
-    about = Exploration(name, seen, Query(), 2, Watch())
+    about = Chapter(name, seen, Query(), 2, Watch())
     about.look(60)
     assert not about.faults
     shown = [at for step in about.steps for at in step.shown]

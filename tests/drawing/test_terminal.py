@@ -13,10 +13,10 @@ from collections import Counter
 
 import pytest
 from conftest import BIN, ROOT, TRIED, run
-from topomap.drawing import scenes
+from topomap.api.scenes import scenes_under
 from topomap.drawing.layout import layout, straight
 from topomap.drawing.scenes import Scene
-from topomap.drawing.terminal import ARROWS, ASCII, BRAILLE, DOTS, LETTERS, text
+from topomap.drawing.terminal import ARROWS, ASCII, BRAILLE, DOTS, LETTERS, drawn
 from topomap.model.experience import observe
 from topomap.model.query import Query
 from topomap.model.topology import TopologicalMap
@@ -46,7 +46,7 @@ def walk(world, steps, draw, start=None):
 
 def printed(scene, width=80, coloured=False):
     """The rows of the picture, and the lines of words after it."""
-    lines = text(scene, width, coloured).split("\n")
+    lines = drawn(scene, width, coloured).split("\n")
     assert lines[:3] == [*scene.title.split("\n"), ""]
     end = lines.index("", 3)
     return lines[3:end], lines[end + 1 :]
@@ -458,7 +458,7 @@ def test_other_encodings(topomap, encoding):
 
 def test_a_picture_in_ascii_has_no_other_characters():
     for made, steps in DOTTED[:4]:
-        shown = text(walk(made, steps, random.Random(0)), 70)
+        shown = drawn(walk(made, steps, random.Random(0)), 70)
         assert not shown.isascii()
         assert shown.translate(ASCII).isascii()
 
@@ -578,7 +578,7 @@ def test_a_map_of_clingo_is_the_only_one_given_if_clingo_gave_all(tmp_path, argu
 
 def first(file):
     """The first map of a file, as it is shown."""
-    found, fault, _ = scenes.scenes_of(str(ROOT / GRID), Query(), Watch(), str(file))
+    found, fault, _ = scenes_under(Watch(), str(ROOT / GRID), Query(), str(file))
     assert fault is None
     return found[0]
 

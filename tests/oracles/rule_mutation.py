@@ -50,8 +50,8 @@ greater or one less. Mutants that read the same are one. Each is asked the queri
 `tests/oracles/known_answers.py` that load it, whose answers are known without the encodings. It is
 *killed* when one gives other answers (other models, shown atoms or costs, or a model twice),
 *refused* when clingo has an error or a message for it, *endless* when a query takes more than
-{seconds} seconds of the processor or {memory} MiB of memory. (If the encoding without the change gives
-other answers too, the run ends with an error.) When all answers are right, a mutant of an
+{seconds} seconds of the processor or {memory} MiB of memory. (If the encoding without the change
+gives other answers too, the run ends with an error.) When all answers are right, a mutant of an
 encoding whose worth is in its size, too, is *larger* if it grounds to more rules, over all named
 experiences with all the parts and some of what `phases/` and `online/` are asked. Another one is
 *equivalent* if `tests/oracles/equivalent.toml` says why, and has *survived* if not. Comments,

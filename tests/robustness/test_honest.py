@@ -20,6 +20,7 @@ from topomap.questions import robot
 from topomap.runtime import formats
 from topomap.runtime.watch import Stopped, Watch
 from topomap.solver import solving
+from topomap.solver.enumeration import best_maps
 from topomap.worlds.environment import grid
 
 GRID, SNAKE = "instances/grid-3x3-snake.lp", "instances/grid-4x4-snake.lp"
@@ -207,13 +208,14 @@ def test_every_limit_has_a_case(inside, name):
 
 
 def cut_short(monkeypatch, *found):
-    """Have ``solve`` find these maps, and then no more time."""
+    """Have ``solve``, and what else asks for the best maps, find these, and then no more time."""
 
-    def answers(*_):
+    def answers(*_, **__):
         yield from found
         raise Stopped("timeout")
 
     monkeypatch.setattr("topomap.api.solve.every", answers)
+    monkeypatch.setattr("topomap.solver.enumeration.every", answers)
 
 
 def test_maps_that_are_not_proved_to_be_best_are_of_no_better_kind(inside, monkeypatch, tmp_path):
@@ -232,6 +234,19 @@ def test_maps_that_are_not_proved_to_be_best_are_of_no_better_kind(inside, monke
     assert inside("check", GRID, file).returncode == 0
     assert "map 1 of 1 found, not proved to be best" in inside("show", file).stdout
     assert UNPROVED in KINDS
+
+
+def test_the_last_map_before_the_end_is_shown_as_not_proved(inside, monkeypatch):
+    experience = read(ROOT / GRID)
+    at = next(one.at for one in solving.best(experience, Query(), Watch()) if one.proved)
+    cut_short(monkeypatch, Found(at, "optimal", (6, 9), proved=False))
+    shown = inside("show", GRID)
+    assert (shown.returncode, UNPROVED in shown.stdout) == (3, True)
+    (only,), fault = best_maps(experience, Query(), Watch())
+    assert (only.at, only.kind, fault) == (at, UNPROVED, "timeout")
+    best = [Found(at, "optimal", (6, 9), proved=proved) for proved in (False, True)]
+    cut_short(monkeypatch, *best)
+    assert best_maps(experience, Query(), Watch()) == (best[1:], "timeout")
 
 
 def test_the_real_map_may_be_among_those_that_were_not_found(inside, made):
@@ -367,7 +382,7 @@ def test_ask_leaves_open_what_the_closed_maps_do_not_settle():
     from topomap.questions import ask, statements
 
     experience = read(ROOT / "instances/manhattan-tour20.lp")
-    answers = ask.Inquiry([statements.parse("planar", experience, "ask")])
+    answers = ask.Inquiry([statements.parse_statement("planar", experience, "ask")])
     settle = answers._settle
 
     def closed_only(experience, query, kind, watch):

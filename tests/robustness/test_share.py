@@ -5,6 +5,7 @@ import gc
 import json
 import os
 import random
+import re
 import signal
 import subprocess
 import sys
@@ -322,7 +323,7 @@ def children(pid):
 def test_no_worker_outlives_the_command(number):
     call = [BIN / "topomap", "count", SNAKE, "--jobs", "2", "--json"]
     with subprocess.Popen(call, stdout=subprocess.PIPE, text=True) as process:
-        eventually(lambda: len(children(process.pid)) >= 3)  # and multiprocessing's own
+        eventually(lambda: len(children(process.pid)) == 2)
         time.sleep(0.5)
         started = children(process.pid)
         process.send_signal(number)
@@ -334,6 +335,42 @@ def test_no_worker_outlives_the_command(number):
         assert process.returncode == 130
         assert (answer["complete"], answer["fault"]) == (False, "interrupted")
     eventually(lambda: not any(running(pid) for pid in started))
+
+
+def test_no_worker_outlives_a_process_that_is_killed_while_it_works(tmp_path):
+    """Not even in the midst of a unit."""
+    (tmp_path / "work.py").write_text(
+        "import time\nfrom pathlib import Path\n"
+        "def stay(number, watch):\n"
+        "    Path(__file__).with_name(f'begun{number}').touch()\n"
+        "    time.sleep(600)\n"
+    )
+    (tmp_path / "script.py").write_text(
+        "from topomap.runtime.watch import Watch\n"
+        "from topomap.solver.processes import Processes\n"
+        "from work import stay\n"
+        "list(Processes(2).each(stay, range(2), Watch()))\n"
+    )
+    with subprocess.Popen([sys.executable, tmp_path / "script.py"]) as process:
+        eventually(lambda: len([*tmp_path.glob("begun*")]) == 2)
+        started = children(process.pid)
+        process.kill()
+    assert len(started) == 2
+    eventually(lambda: not any(running(pid) for pid in started))
+
+
+def test_the_interrupt_key_is_for_no_worker():
+    """Ctrl-C in the terminal goes to all processes; each worker has it blocked from its start."""
+    with Processes(3) as crew:
+        assert list(crew.each(square, range(9), QUIET)) == [number**2 for number in range(9)]
+        started = children(os.getpid())
+        for pid in started:
+            (line,) = re.findall(r"SigBlk:\s*(\w+)", Path(f"/proc/{pid}/status").read_text())
+            assert int(line, 16) >> signal.SIGINT - 1 & 1
+            os.kill(pid, signal.SIGINT)
+        assert list(crew.each(square, range(9), QUIET)) == [number**2 for number in range(9)]
+        assert children(os.getpid()) == started
+    assert len(started) >= 3
 
 
 def running(pid):

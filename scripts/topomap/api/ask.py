@@ -5,12 +5,14 @@ from dataclasses import dataclass
 from typing import Any, Unpack, overload
 
 from topomap.api.maps import Map
-from topomap.api.parts import Parts, begin, query_of
+from topomap.api.parts import Parts, begin, demand_text, query_of
 from topomap.model.experience import Experience
 from topomap.model.found import Found
 from topomap.model.query import Query
-from topomap.questions import statements
+from topomap.model.reply import Reply
 from topomap.questions.ask import Inquiry
+from topomap.questions.statements import parse_statement
+from topomap.runtime.checks import flag
 from topomap.runtime.limits import LARGEST
 from topomap.runtime.watch import Attempt, Watch
 
@@ -29,7 +31,7 @@ class StatementAnswer:
     note: str | None
 
 
-class StatementAnswers(Sequence[StatementAnswer]):
+class StatementAnswers(Reply, Sequence[StatementAnswer]):
     """An answer to each statement, in their order."""
 
     def __init__(
@@ -40,8 +42,9 @@ class StatementAnswers(Sequence[StatementAnswer]):
         inquiry: Inquiry,
         fault: str | None,
     ):
+        super().__init__(fault)
         self.experience, self.query, self.optimal = experience, query, optimal
-        self.inquiry, self.fault = inquiry, fault
+        self.inquiry = inquiry
 
         def shown(found: Found | None) -> Map | None:
             return None if found is None else Map(experience, found)
@@ -68,11 +71,6 @@ class StatementAnswers(Sequence[StatementAnswer]):
         return len(self._each)
 
     @property
-    def complete(self) -> bool:
-        """Whether all statements are settled; if not, ``fault`` says why."""
-        return self.fault is None
-
-    @property
     def has_maps(self) -> bool | None:
         """Whether there is a map at all; None if that is not settled. If there is none, each
         statement is said to hold in none, and so would its opposite be."""
@@ -90,16 +88,13 @@ class StatementAnswers(Sequence[StatementAnswer]):
         return self.inquiry.cost
 
     def lines(self) -> Iterator[str]:
-        """The answer to read, as ``topomap ask`` prints it."""
         return self.inquiry.lines(self.experience, self.fault)
 
     def document(self) -> dict[str, Any]:
-        """The answer as ``topomap ask --json`` writes it, but for the name of the instance and
-        the keys that all answers have (``docs/formats.md``)."""
         return self.inquiry.document(self.experience, self.query, self.optimal)
 
-    def __str__(self) -> str:
-        return "\n".join(self.lines())
+    def _gist(self) -> str:
+        return "; ".join(f"{one.statement}: {one.holds}" for one in self)
 
 
 def ask(
@@ -109,7 +104,6 @@ def ask(
     bound: int | None = None,
     horizon: int | None = None,
     timeout: float | None = None,
-    watch: Watch | None = None,
     **parts: Unpack[Parts],
 ) -> StatementAnswers:
     """Tell of each statement whether it holds in all maps that are consistent with an experience
@@ -124,22 +118,32 @@ def ask(
         bound: the most places that a map may have.
         horizon: the last step that counts.
         timeout: seconds after which it stops.
-        watch: that of a command; then ``timeout`` is not used.
         parts: what the maps are to have.
 
     Returns:
         An answer to each statement; what is not settled in time is said to be so.
 
     Raises:
+        TypeError: no experience, or a statement that is no text.
         ValueError: no statement, an unknown part, or a number that cannot be.
-        InputError: a text that is no statement about this experience; one line.
+        InputError: an experience that cannot be, or a text that is no statement about it; one
+            line.
     """
     query = query_of(parts, bound=bound, horizon=horizon)
     if not statement:
         raise ValueError("ask: a statement is wanted, such as same(3,12)")
-    watch = begin(experience, timeout, watch)
-    seen = experience.cut(LARGEST if horizon is None else horizon)
-    inquiry = Inquiry([statements.parse(text, seen, "ask") for text in statement])
+    for text in statement:
+        demand_text("statement", text, "same(3,12)")
+    flag("optimal", optimal)
+    return ask_under(begin(experience, timeout, None), experience, statement, query, optimal)
+
+
+def ask_under(
+    watch: Watch, experience: Experience, asked: Sequence[str], query: Query, optimal: bool
+) -> StatementAnswers:
+    """The same of the maps of a query, under the watch of a command."""
+    seen = experience.cut(LARGEST if query.horizon is None else query.horizon)
+    inquiry = Inquiry([parse_statement(text, seen, "ask") for text in asked])
     with Attempt() as attempt:
         inquiry.settle(seen, query, optimal, watch)
     return StatementAnswers(seen, query, optimal, inquiry, attempt.fault)

@@ -42,8 +42,18 @@ def svg(scene: Scene) -> str:
     return made.getvalue().decode()
 
 
+def characters(scene: Scene, columns: int, coloured: bool, ascii: bool = False) -> str:
+    """A map as lines of characters, at most so many in a line; of ASCII alone, if asked for.
+    Raises MemoryError."""
+    ready()
+    from topomap.drawing import terminal
+
+    text = terminal.drawn(scene, columns, coloured)
+    return text.translate(terminal.ASCII) if ascii else text
+
+
 def _write(scene: Scene, out: IO[bytes], form: str) -> None:
     from topomap.drawing import sheet
 
     with _ALONE:
-        sheet.save(sheet.picture([scene]), out, form)
+        sheet.write(sheet.picture([scene]), out, form)

@@ -5,20 +5,19 @@ from dataclasses import replace
 from typing import Any, Unpack
 
 from topomap.api.maps import Map
-from topomap.api.parts import Parts, begin, query_of
+from topomap.api.parts import Parts, begin, demand_text, query_of
 from topomap.model.experience import Experience
 from topomap.model.found import Found
 from topomap.model.query import Query
+from topomap.model.reply import Reply
 from topomap.model.vocabulary import DEMANDS
-from topomap.questions import statements
-from topomap.questions.explain import Explainer
-from topomap.questions.explanations import Explanation, Reason
-from topomap.questions.statements import Statement
+from topomap.questions.explain import Explainer, Explanation, Reason
+from topomap.questions.statements import Statement, parse_statement
 from topomap.runtime.limits import LARGEST
 from topomap.runtime.watch import Attempt, Watch
 
 
-class Explained:
+class Explained(Reply):
     """A verdict, and the reasons for it."""
 
     def __init__(
@@ -29,7 +28,8 @@ class Explained:
         explanation: Explanation,
         fault: str | None,
     ):
-        self.experience, self.query, self.fault = experience, query, fault
+        super().__init__(fault)
+        self.experience, self.query = experience, query
         self.explanation, self._statement = explanation, statement
 
     @property
@@ -78,22 +78,11 @@ class Explained:
         at = self.explanation.maps.get(holds) if self.explanation.verdict == "open" else None
         return None if at is None else Map(self.experience, Found(at, "consistent"))
 
-    @property
-    def complete(self) -> bool:
-        """Whether all was found; if not, ``fault`` says why."""
-        return self.fault is None
-
     def lines(self) -> Iterator[str]:
-        """The answer to read, as ``topomap explain`` prints it."""
         return self.explanation.lines(self.experience, self._statement, self.fault)
 
     def document(self) -> dict[str, Any]:
-        """The answer as ``topomap explain --json`` writes it, but for the name of the instance
-        and the keys that all answers have (``docs/formats.md``)."""
         return self.explanation.document(self._statement, self.query)
-
-    def __str__(self) -> str:
-        return "\n".join(self.lines())
 
 
 def explain(
@@ -103,7 +92,6 @@ def explain(
     bound: int | None = None,
     horizon: int | None = None,
     timeout: float | None = None,
-    watch: Watch | None = None,
     **parts: Unpack[Parts],
 ) -> Explained:
     """Tell why a statement is impossible or certain, or why there is no map: reasons none of
@@ -117,7 +105,6 @@ def explain(
         bound: the most places that a map may have.
         horizon: the last step that counts.
         timeout: seconds after which it stops.
-        watch: that of a command; then ``timeout`` is not used.
         parts: what the maps are to have; not ``genus`` and ``minimal``, since that another map
             is better is no reason of this kind.
 
@@ -125,14 +112,24 @@ def explain(
         The verdict and the reasons; what was not found in time is said to be so.
 
     Raises:
+        TypeError: no experience, or a statement that is no text.
         ValueError: an unknown part, or a number that cannot be.
-        InputError: a text that is no statement about this experience; one line.
+        InputError: an experience that cannot be, or a text that is no statement about it; one
+            line.
     """
     query = query_of(parts, bound=bound, horizon=horizon, allowed=DEMANDS)
+    if statement is not None:
+        demand_text("statement", statement, "same(3,12)")
+    return explain_under(begin(experience, timeout, None), experience, statement, query)
+
+
+def explain_under(
+    watch: Watch, experience: Experience, statement: str | None, query: Query
+) -> Explained:
+    """The same of the maps of a query, under the watch of a command."""
+    seen = experience.cut(LARGEST if query.horizon is None else query.horizon)
     query = replace(query, horizon=None)  # which ends the experience here
-    watch = begin(experience, timeout, watch)
-    seen = experience.cut(LARGEST if horizon is None else horizon)
-    asked = None if statement is None else statements.parse(statement, seen, "explain")
+    asked = None if statement is None else parse_statement(statement, seen, "explain")
     found = Explanation()
     with Attempt() as attempt:
         Explainer(seen, query, asked, watch, found).settle()

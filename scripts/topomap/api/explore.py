@@ -1,24 +1,28 @@
 """Where to go next, so that the maps are told apart."""
 
-from collections.abc import Iterator, Sequence
+import os
+from collections.abc import Iterable, Iterator
 from functools import cached_property
 from typing import Any, Unpack
 
 from topomap.api.maps import Map
-from topomap.api.parts import Parts, begin, query_of
+from topomap.api.parts import Parts, begin, demand_experience, path_of, query_of
 from topomap.model.experience import Experience
 from topomap.model.found import Found
 from topomap.model.vocabulary import PRUNING
 from topomap.questions import proofs
-from topomap.questions.candidates import Candidates, gather
+from topomap.questions.candidates import PARTS_OF, At, Candidates, gather
 from topomap.questions.explore import Untold, plan
 from topomap.questions.plans import Planned
 from topomap.questions.proofs import Checked
 from topomap.questions.standings import Prediction
-from topomap.runtime.limits import LARGEST, LONGEST_WALK
+from topomap.runtime.checks import flag, shown, whole, whole_if_given
+from topomap.runtime.limits import LARGEST, LONGEST_WALK, MOST_WALKED
 from topomap.runtime.watch import Watch
 
-OPTIMAL = ("optimal",)  # the maps that are in question, unless told
+Among = str | os.PathLike[str] | Map  # a kind of maps, a file of them, or one
+_ONE = (str, os.PathLike, Map)
+_WANTED = f"a Map, a kind of maps ({', '.join(PARTS_OF)}) or a file of maps is wanted, or several"
 
 
 class NextWalk:
@@ -107,7 +111,7 @@ class NextWalk:
 
 def candidates(
     experience: Experience,
-    among: str | Sequence[str | Map] = OPTIMAL,
+    among: Among | Iterable[Among] = "optimal",
     *,
     bound: int | None = None,
     horizon: int | None = None,
@@ -118,15 +122,33 @@ def candidates(
     """The maps that may be the real one. Parameters and errors are those of ``explore``; the
     maps are in ``each``, and ``facts()`` gives them to ``encodings/explore.lp``."""
     query = query_of(parts, bound=bound, horizon=horizon, allowed=PRUNING)
-    of = [among] if isinstance(among, str) else among
-    asked = [one if isinstance(one, str) else one.at for one in of]
-    cut = experience.cut(LARGEST if horizon is None else horizon)
-    return gather(experience, cut, query, asked, begin(experience, timeout, watch))
+    asked = _asked(among)
+    watch = begin(experience, timeout, watch)
+    cut = experience.cut(LARGEST if query.horizon is None else query.horizon)
+    return gather(experience, cut, query, asked, watch)
+
+
+def _asked(among: Among | Iterable[Among]) -> list[str | At]:
+    """The maps in question: kinds and files by name, maps by their dstates. Raises TypeError if one
+    is something else, and ValueError if there is none: that no map is consistent would be no
+    answer, as none was looked for."""
+    if isinstance(among, _ONE):
+        among = [among]
+    if not isinstance(among, Iterable):
+        raise TypeError(f"among: {_WANTED}, not {shown(among)}")
+    asked: list[str | At] = []
+    for number, one in enumerate(among, 1):
+        if not isinstance(one, _ONE):
+            raise TypeError(f"among: number {number}: {_WANTED}, not {shown(one)}")
+        asked.append(one.at if isinstance(one, Map) else path_of(one))
+    if not asked:
+        raise ValueError(f"among: {_WANTED}, but it is empty")
+    return asked
 
 
 def explore(
     experience: Experience,
-    among: str | Sequence[str | Map] | Candidates = OPTIMAL,
+    among: Among | Iterable[Among] | Candidates = "optimal",
     *,
     marker: bool = False,
     steps: int = LONGEST_WALK,
@@ -143,10 +165,11 @@ def explore(
     Parameters:
         experience: what was seen and done.
         among: the maps that may be the real one: ``optimal`` (the best so far, where none is
-            closed), ``closed``, ``perpendicular`` (and closed), the name of a file of maps, or
-            maps; several for all of them; or what ``candidates`` gave.
+            closed), ``closed``, ``perpendicular`` (and closed), a file of maps, or a map;
+            several for all of them; or what ``candidates`` gave, which was told already what
+            ``bound``, ``horizon`` and ``parts`` are.
         marker: whether the agent carries a marker, which it may drop once.
-        steps: the most steps of the walk.
+        steps: the most steps of the walk, 1 to 1000.
         bound: the most places that a map may have.
         horizon: the last step that counts.
         timeout: seconds after which it stops.
@@ -157,13 +180,18 @@ def explore(
         The walk; its ``fault`` says why it is not proved to be the best.
 
     Raises:
-        ValueError: an unknown part, or a number that cannot be.
-        InputError: a file that cannot be read, or a map that is none of this experience.
+        TypeError: no experience, or no maps.
+        ValueError: an unknown part, a number that cannot be, or not one map to tell apart.
+        InputError: an experience that cannot be, a file that cannot be read, or a map that is none
+            of this experience.
     """
-    if steps < 1:
-        raise ValueError(f"steps={steps}: it must be 1 or more")
+    steps, marker = whole("steps", steps, 1, MOST_WALKED), flag("marker", marker)
     watch = begin(experience, timeout, watch)
-    if not isinstance(among, Candidates):
+    if isinstance(among, Candidates):
+        query_of(parts, bound=bound, horizon=horizon, allowed=PRUNING)
+        if parts or bound is not None or horizon is not None:
+            raise ValueError("bound, horizon and parts are told to candidates, not to explore")
+    else:
         among = candidates(experience, among, bound=bound, horizon=horizon, watch=watch, **parts)
     if not among.each:
         return NextWalk(among, None)
@@ -173,7 +201,9 @@ def explore(
     return NextWalk(among, Planned(among, made, marker, steps))
 
 
-def check_proofs(experience: Experience, path: str, *, horizon: int | None = None) -> Checked:
+def check_proofs(
+    experience: Experience, path: str | os.PathLike[str], *, horizon: int | None = None
+) -> Checked:
     """Check the proofs in a file, which ``--proof`` or ``NextWalk.proofs`` made, without a solver.
 
     Parameters:
@@ -185,6 +215,10 @@ def check_proofs(experience: Experience, path: str, *, horizon: int | None = Non
         How many proofs there are, and what is ``wrong`` with them.
 
     Raises:
+        TypeError: no experience, or no path.
+        ValueError: a horizon that cannot be.
         InputError: there are no proofs in the file.
     """
-    return proofs.check_proofs(path, experience.cut(LARGEST if horizon is None else horizon))
+    demand_experience(experience)
+    last = whole_if_given("horizon", horizon, 0)
+    return proofs.check_proofs(path_of(path), experience.cut(LARGEST if last is None else last))

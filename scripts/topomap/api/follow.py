@@ -2,14 +2,17 @@
 
 from collections.abc import Iterable, Iterator
 from functools import cached_property
-from typing import Any
+from typing import Any, Unpack
 
 from topomap.api.maps import Map
+from topomap.api.parts import OnlineParts, asked_of
+from topomap.model.experience import MOST_SLOTS
 from topomap.model.found import Found
 from topomap.model.words import number
 from topomap.questions.explore import Plan
 from topomap.questions.follow import Following, StepAnswer
 from topomap.questions.records import Record
+from topomap.runtime.checks import collection, flag, integer, seconds, whole, whole_if_given
 from topomap.runtime.limits import MOST_COUNTED
 from topomap.runtime.watch import Watch
 from topomap.solver.online import Certain
@@ -158,11 +161,16 @@ class Follower:
             What is known now.
 
         Raises:
-            ValueError: there can be no such step; nothing has changed then.
+            ValueError: there can be no such step.
+            TypeError: a view, or landmarks, that are no collection. With either error nothing
+                has changed.
         """
-        data: dict[str, Any] = {"view": list(view), "landmarks": list(landmarks)}
+        data: dict[str, Any] = {
+            "view": [integer("view: slot", slot) for slot in collection("view", view)],
+            "landmarks": list(collection("landmarks", landmarks)),
+        }
         data |= {"drop": drop, "pick": pick, "marker": marker}
-        data |= {} if turn is None else {"turn": turn}
+        data |= {} if turn is None else {"turn": integer("turn", turn)}
         for _ in self.take(self.record.with_object(data)):
             pass
         return self.status(watch)
@@ -170,7 +178,7 @@ class Follower:
     def undo(self, steps: int = 1, *, watch: Watch | None = None) -> FollowerStatus:
         """Take the last steps back, and return what is known then. Raises ValueError if there are
         not as many; the first view cannot be taken back."""
-        for _ in self.take(self.record.undone(steps)):
+        for _ in self.take(self.record.undone(integer("steps", steps))):
             pass
         return self.status(watch)
 
@@ -189,34 +197,33 @@ class Follower:
 def follow(
     slots: int | None = None,
     *,
-    planar: bool = False,
     bound: int | None = None,
     marker: bool = False,
     count_limit: int = MOST_COUNTED,
     timeout: float | None = None,
+    **parts: Unpack[OnlineParts],
 ) -> Follower:
     """Follow an exploration as it happens (the hypotheses and the best maps are those of the
     paper, sections II and III).
 
     Parameters:
         slots: the number of directions at each place, even; None if a line will tell it.
-        planar: whether maps are to be planar.
         bound: the most places that a map may have.
         marker: whether the agent carries a marker, for what to do next.
         count_limit: of more hypotheses it is only told that they are more.
         timeout: seconds that the answer to a step may take.
+        parts: what the maps are to have: ``planar``.
 
     Returns:
         A follower, to which the first view is told by ``step(view)``, the next ones by
         ``step(view, turn)``.
 
     Raises:
-        ValueError: a number that cannot be.
+        ValueError: an unknown part, or a number that cannot be.
     """
-    for name, value in (("bound", bound), ("count_limit", count_limit)):
-        if value is not None and value < 1:
-            raise ValueError(f"{name}={value}: it must be 1 or more")
-    following = Following(planar, bound, marker, count_limit)
+    planar = "planar" in asked_of(parts, OnlineParts.__annotations__)
+    bound, count_limit = whole_if_given("bound", bound, 1), whole("count_limit", count_limit, 1)
+    following = Following(planar, bound, flag("marker", marker), count_limit)
     if slots is not None:
-        following.record = Record().with_slots(slots)
-    return Follower(following, timeout)
+        following.record = Record().with_slots(whole("slots", slots, 2, MOST_SLOTS))
+    return Follower(following, seconds("timeout", timeout))

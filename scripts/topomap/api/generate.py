@@ -1,7 +1,9 @@
 """Making instances by exploring worlds."""
 
+from topomap.api.parts import demand_text, world_of
+from topomap.runtime.checks import share, whole_if_given
+from topomap.runtime.limits import MOST_STEPS
 from topomap.worlds.environment import Environment
-from topomap.worlds.environment import environment as environment_of
 from topomap.worlds.instance import Instance, instance
 
 
@@ -24,7 +26,7 @@ def generate(
             ``size``, its rows and columns; or an environment that was made before.
         route: ``snake``, ``walk`` (random), ``tour`` (over every way), compass letters such as
             ``ESSENN``, or absolute slots such as ``0,3,1``.
-        steps: cut the route after so many steps; a walk needs it.
+        steps: cut the route after so many steps, 100,000 at most; a walk needs it.
         start: the first place, such as ``0,2``; the smallest by default.
         facing: the gateway stood at first, a slot; by default the one that is first left by.
         signs: the share of places, 0 to 1, that carry their own name as a landmark.
@@ -37,13 +39,18 @@ def generate(
         ``name``, ``header``, and ``text()``, the file.
 
     Raises:
-        ValueError: an unknown world, or no rows and columns.
-        InputError: what cannot be walked.
+        TypeError: something else than a world or a route.
+        ValueError: an unknown world, no rows and columns, or a number that cannot be.
+        InputError: what cannot be walked, or is too large: more than 100,000 places, or a tour
+            where an odd number of ways meets in more than 1500 places.
     """
-    if isinstance(world, str):
-        if len(size) != 2:
-            raise ValueError(f"{world}: rows and columns are wanted, not {len(size)} numbers")
-        world = environment_of(world, *size, thin=thin, seed=seed or 0)
+    demand_text("route", route, "ESSENN")
+    thin, signs, seed = share("thin", thin), share("signs", signs), whole_if_given("seed", seed, 0)
+    steps, facing = (
+        whole_if_given("steps", steps, 0, MOST_STEPS),
+        whole_if_given("facing", facing, 0),
+    )
+    world = world_of(world, size, thin, seed or 0)
     if route == "walk" and steps is None:
         raise ValueError("route='walk' needs steps")
     return instance(

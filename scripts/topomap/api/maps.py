@@ -41,7 +41,8 @@ class Map:
     ):
         """The map of what was found in an experience: the ``number``-th of ``many`` (0: how many is
         not known), which are all that there are if ``whole``. ``name`` says where the experience
-        is from; ``noisy`` tells that views were allowed to be wrong: ``json`` says which were."""
+        is from; ``noisy`` tells that views were allowed to be wrong; ``document`` then says which
+        were."""
         self._seen, self._found = experience, found
         self._number, self._many, self._whole = number, many, whole
         self._name, self._noisy = name, noisy
@@ -151,12 +152,17 @@ class Map:
 
     def _repr_svg_(self) -> str | None:
         """What a notebook shows; without the extra ``draw`` it shows the line of ``repr``."""
-        from topomap.api.draw import svg
         from topomap.runtime.extras import lacking
 
-        return None if lacking("draw") else svg(self._scene())
+        return None if lacking("draw") else self._drawn
 
-    def json(self) -> dict[str, Any]:
+    @cached_property
+    def _drawn(self) -> str:
+        from topomap.api.draw import svg
+
+        return svg(self._scene())
+
+    def document(self) -> dict[str, Any]:
         """The map as ``topomap solve --json`` writes it (``docs/formats.md`` names the keys)."""
         told = answers.map_json(self._world, self.at)
         if self._noisy or self.misread:

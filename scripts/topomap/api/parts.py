@@ -1,14 +1,18 @@
-"""The parts of the theory, as keyword arguments of the public functions."""
+"""What the public functions have in common: the parts of the theory, as keyword arguments, and
+the checks of what they are given."""
 
 import difflib
-from collections.abc import Collection, Mapping
-from typing import TypedDict
+import os
+from collections.abc import Collection, Mapping, Sequence
+from typing import Any, TypedDict
 
 from topomap.model.experience import Experience
 from topomap.model.facts import parse
 from topomap.model.query import Query
 from topomap.model.vocabulary import FORMS, PARTS, STATED
+from topomap.runtime.checks import flag, seconds, shown, whole_if_given
 from topomap.runtime.watch import Watch
+from topomap.worlds.environment import Environment, environment
 
 
 class Parts(TypedDict, total=False):
@@ -32,8 +36,14 @@ class Parts(TypedDict, total=False):
     minimal: bool
 
 
+class OnlineParts(TypedDict, total=False):
+    """What maps are to have that are followed step by step; see ``Parts``."""
+
+    planar: bool
+
+
 def query_of(
-    parts: Mapping[str, object],
+    parts: Mapping[str, Any],
     *,
     bound: int | None = None,
     horizon: int | None = None,
@@ -42,24 +52,40 @@ def query_of(
     allowed: Collection[str] = tuple(PARTS),
 ) -> Query:
     """The query that asks for the parts that are true. Raises ValueError, naming the known ones,
-    if one is not among those that are allowed."""
+    if one is not among those that are allowed, and if something else is not what it may be."""
+    asked = frozenset(asked_of(parts, allowed))
+    if encoding not in FORMS:
+        raise ValueError(f"encoding={encoding!r}: it is {' or '.join(FORMS)}")
+    if encoding == "paper" and (others := sorted(asked - STATED)):
+        raise ValueError(f"encoding='paper' does not state {', '.join(others)}")
+    if encoding == "paper" and noise is not None:
+        raise ValueError("encoding='paper' does not go with noise")
+    return Query(
+        asked,
+        whole_if_given("bound", bound, 1),
+        whole_if_given("horizon", horizon, 0),
+        encoding,
+        whole_if_given("noise", noise, 0),
+    )
+
+
+def asked_of(parts: Mapping[str, Any], allowed: Collection[str]) -> list[str]:
+    """The parts that are true. Raises ValueError, naming the known ones, if one is not among those
+    that are allowed, or is neither true nor false."""
     for part in parts:
         if part not in allowed:
             near = difflib.get_close_matches(part, allowed, 1)
             hint = f"; did you mean {near[0]}?" if near else ""
             known = ", ".join(allowed)
             raise ValueError(f"{part!r} is not one of the parts {known}{hint}")
-    for name, value, least in (("bound", bound, 1), ("horizon", horizon, 0), ("noise", noise, 0)):
-        if value is not None and value < least:
-            raise ValueError(f"{name}={value}: it must be {least} or more")
-    if encoding not in FORMS:
-        raise ValueError(f"encoding={encoding!r}: it is {' or '.join(FORMS)}")
-    asked = frozenset(part for part, value in parts.items() if value)
-    if encoding == "paper" and (others := sorted(asked - STATED)):
-        raise ValueError(f"encoding='paper' does not state {', '.join(others)}")
-    if encoding == "paper" and noise is not None:
-        raise ValueError("encoding='paper' does not go with noise")
-    return Query(asked, bound, horizon, encoding, noise)
+    return [part for part, value in parts.items() if flag(part, value)]
+
+
+def demand_experience(experience: object) -> None:
+    """Raises TypeError if what was given is no experience, such as the name of a file."""
+    if not isinstance(experience, Experience):
+        told = shown(experience)
+        raise TypeError(f"an Experience is wanted, which topomap.read(path) gives, not {told}")
 
 
 def begin(
@@ -67,8 +93,40 @@ def begin(
 ) -> Watch:
     """The watch of a call: that of a command, which has read the experience and so checked it;
     or a new one, once an experience that may have been made in Python is checked. Raises
-    InputError, one line, if it cannot be; ``noisy`` allows what may be a misreading."""
+    TypeError if it is no experience; InputError, one line, if it cannot be, where ``noisy``
+    allows what may be a misreading; ValueError if the time limit is no number of seconds."""
+    demand_experience(experience)
     if watch is not None:
         return watch
+    limit = seconds("timeout", timeout)
     parse(experience.facts(), "the experience, as facts", noisy)
-    return Watch(timeout)
+    return Watch(limit)
+
+
+def demand_text(name: str, value: object, example: str) -> None:
+    """Raises TypeError if what was given is no text."""
+    if not isinstance(value, str):
+        raise TypeError(f"{name}: a text is wanted, such as {example!r}, not {shown(value)}")
+
+
+def path_of(path: object) -> str:
+    """The path of a file. Raises TypeError if it is none."""
+    if isinstance(path, str):
+        return path
+    if isinstance(path, os.PathLike) and isinstance(named := os.fspath(path), str):
+        return named
+    raise TypeError(f"the path of a file is wanted, not {shown(path)}")
+
+
+def world_of(world: str | Environment, size: Sequence[int], thin: float, seed: int) -> Environment:
+    """The environment that is named, or that was made before. Raises TypeError if it is neither,
+    ValueError if it is not known or of a size that cannot be, InputError if it is too large."""
+    if isinstance(world, Environment):
+        return world
+    if not isinstance(world, str):
+        told = shown(world)
+        raise TypeError(f"world: the name of a world, or an environment, is wanted, not {told}")
+    if len(size) != 2:
+        raise ValueError(f"{world}: rows and columns are wanted, not {len(size)} numbers")
+    rows, columns = size
+    return environment(world, rows, columns, thin, seed)

@@ -2,8 +2,10 @@
 
 from pathlib import Path
 
+from topomap.api.parts import path_of
 from topomap.model import facts
 from topomap.model.experience import Experience
+from topomap.runtime.checks import flag
 
 
 def read(path: str | Path, noisy: bool = False) -> Experience:
@@ -20,7 +22,8 @@ def read(path: str | Path, noisy: bool = False) -> Experience:
         from 0, ``turns`` of each step from 1, in slots clockwise.
 
     Raises:
+        TypeError: no path.
         InputError: the file cannot be read or is no instance; the message is one line that names
             file, line, step and fault.
     """
-    return facts.read(path, noisy)
+    return facts.read(path_of(path), flag("noisy", noisy))

@@ -5,15 +5,15 @@ from functools import cached_property
 from typing import Any, Unpack
 
 from topomap.api.maps import Map
-from topomap.api.parts import Parts, query_of
+from topomap.api.parts import Parts, query_of, world_of
 from topomap.model.experience import Experience
 from topomap.model.vocabulary import PRUNING
 from topomap.questions.robot import Outcome, start_of
 from topomap.questions.robot import simulate as explored
+from topomap.runtime.checks import flag, seconds, share, whole, whole_if_given
 from topomap.runtime.limits import MOST_STEPS
 from topomap.runtime.watch import Watch
 from topomap.worlds.environment import Environment
-from topomap.worlds.environment import environment as environment_of
 
 STEPS = 20  # for each way
 
@@ -57,29 +57,32 @@ class Simulation:
         return self.outcome.steps
 
     @property
-    def tour(self) -> int:
-        """How many steps a tour over every way takes, by one who knows the map."""
+    def tour(self) -> int | None:
+        """How many steps a tour over every way takes, by one who knows the map; None if the
+        world is too large for that, or it was cut."""
         return self.outcome.tour
 
     @property
     def random(self) -> int | None:
         """How many steps random walks take until they have gone every way: the median; None if
-        most are too long to be walked to the end."""
+        most are too long to be walked to the end, or it was cut."""
         return self.outcome.random
 
     @property
     def fault(self) -> str | None:
-        """Why the robot did not come to an end, or None if it did."""
+        """Why the robot did not come to an end, or why ``tour`` or ``random`` is missing; None if
+        neither is so."""
         return self.outcome.fault
 
     @property
     def complete(self) -> bool:
-        """Whether the robot came to an end: more walking would tell it nothing."""
+        """Whether the robot came to an end, so that more walking would tell it nothing; and the
+        walks for comparison did, too."""
         return self.fault is None
 
-    def json(self) -> dict[str, Any]:
+    def document(self) -> dict[str, Any]:
         """The same as ``topomap simulate --json`` writes it, but for its format and its end."""
-        return {"environment": self.name, **self.outcome.json()}
+        return {"environment": self.name, **self.outcome.document()}
 
     def __str__(self) -> str:
         """The lines that ``topomap simulate`` prints."""
@@ -112,29 +115,34 @@ def simulate(
         signs: the share of places, 0 to 1, that carry their own name as a landmark.
         seed: for signs and maze.
         thin: the share of the ways of a maze, 0 to 1, that are taken away.
-        steps: walk so many at most; 20 for each way by default.
+        steps: walk so many at most, 100,000 or fewer; 20 for each way by default.
         marker: whether the robot carries a marker that it may put down.
         bound: what it takes for granted: so many places at most.
-        timeout: stop after so many seconds.
+        timeout: stop after so many seconds, the walks for comparison too.
         watch: what stops the search and shows its progress, instead of ``timeout``.
         parts: what it takes for granted: ``planar``, ``perpendicular``.
 
     Returns:
         What came of it: ``end``, ``maps``, ``truth``, ``experience``, ``steps``, and for
-        comparison ``tour`` and ``random``. Where it was cut, ``fault`` says why.
+        comparison ``tour`` and ``random``. Where something was cut, ``fault`` says why.
 
     Raises:
-        ValueError: an unknown world or part, or no rows and columns.
-        InputError: a world that cannot be mapped, such as a torus, or no such place or gateway.
+        TypeError: something else than a world.
+        ValueError: an unknown world or part, no rows and columns, or a number that cannot be.
+        InputError: a world that cannot be mapped, such as a torus, or is too large (more than
+            100,000 places); no such place or gateway.
     """
     query = query_of(parts, bound=bound, allowed=PRUNING)
-    if isinstance(world, str):
-        if len(size) != 2:
-            raise ValueError(f"{world}: rows and columns are wanted, not {len(size)} numbers")
-        world = environment_of(world, *size, thin=thin, seed=seed)
+    thin, signs, seed = share("thin", thin), share("signs", signs), whole("seed", seed, 0)
+    steps, facing = (
+        whole_if_given("steps", steps, 0, MOST_STEPS),
+        whole_if_given("facing", facing, 0),
+    )
+    marker, limit = flag("marker", marker), seconds("timeout", timeout)
+    watch = Watch(limit) if watch is None else watch
+    world = world_of(world, size, thin, seed)
     if signs:
         world = world.signed(signs, seed)
     there, dstate = start_of(world, start, facing)
     most = min(STEPS * len(there.links) // 2, MOST_STEPS) if steps is None else steps
-    watch = Watch(timeout) if watch is None else watch
     return Simulation(world.name, explored(there, dstate, query, watch, most, marker))

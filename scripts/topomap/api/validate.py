@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from topomap.api.parts import path_of
 from topomap.model import validation
 
 
@@ -12,22 +13,29 @@ class Validation:
     """What is wrong with an instance file, and what in it looks like a mistake.
 
     ``valid`` tells whether every command takes it. ``faults`` and ``warnings`` are dictionaries
-    with the ``line`` and ``step``, or None, and the words under ``fault`` or ``warning``.
+    with the ``line`` and ``step``, or None, and the words under ``fault`` or ``warning``. In an
+    ``if`` it is true when the file is valid.
     """
 
     told: dict[str, Any]
 
     @property
     def valid(self) -> bool:
+        """Whether every command takes the file; warnings do not count."""
         return bool(self.told["valid"])
 
     @property
     def faults(self) -> list[dict[str, Any]]:
+        """What is wrong: each fault with ``line``, ``step`` and ``fault``, in words."""
         return list(self.told["faults"])
 
     @property
     def warnings(self) -> list[dict[str, Any]]:
+        """What is seldom meant: each with ``line``, ``step`` and ``warning``, in words."""
         return list(self.told["warnings"])
+
+    def __bool__(self) -> bool:
+        return self.valid
 
     def document(self) -> dict[str, Any]:
         """All that is known, as ``topomap validate --json`` writes it."""
@@ -49,5 +57,8 @@ def validate(path: str | Path) -> Validation:
 
     Returns:
         What is wrong with it, and warnings. A file that cannot be read has one fault.
+
+    Raises:
+        TypeError: no path.
     """
-    return Validation(validation.judged(str(path)))
+    return Validation(validation.judged(path_of(path)))

@@ -4,11 +4,10 @@ import argparse
 from typing import Any
 
 from topomap.cli.arguments import add_optimal, add_query, command
-from topomap.cli.calls import parts_of
+from topomap.cli.calls import asked_query
+from topomap.cli.tell import tell
 from topomap.model.vocabulary import PARTS, VOCABULARY
-from topomap.runtime import formats
 from topomap.runtime.files import output
-from topomap.runtime.status import exit_status
 
 
 def add(group: Any) -> None:
@@ -30,26 +29,12 @@ def add(group: Any) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Settle statements."""
-    from topomap.api.ask import ask
-    from topomap.model.facts import read
+    from topomap.api.ask import ask_under
+    from topomap.api.read import read
     from topomap.runtime.watch import heeding
 
     experience = read(args.instance)
     with output(args.output) as out:
         with heeding(args.timeout) as watch:
-            answers = ask(
-                experience,
-                *args.statement,
-                optimal=args.optimal,
-                bound=args.bound,
-                horizon=args.horizon,
-                watch=watch,
-                **parts_of(args),
-            )
-        if args.json:
-            out.write(
-                formats.line({"instance": args.instance, **answers.document()}, answers.fault)
-            )
-        else:
-            out.writelines(f"{line}\n" for line in answers.lines())
-    return exit_status(answers.fault, bool(answers.has_maps))
+            answers = ask_under(watch, experience, args.statement, asked_query(args), args.optimal)
+        return tell(args, out, answers, bool(answers.has_maps), args.instance)

@@ -2,12 +2,16 @@
 
 import argparse
 import json
-from typing import Any
+from typing import IO, TYPE_CHECKING, Any
 
 from topomap.cli.arguments import add_query, command
-from topomap.cli.calls import parts_of
+from topomap.cli.calls import asked_query
 from topomap.runtime import formats
 from topomap.runtime.files import output
+from topomap.runtime.status import exit_status
+
+if TYPE_CHECKING:
+    from topomap.api.branching import BranchingNodes
 
 
 def add(group: Any) -> None:
@@ -23,28 +27,29 @@ def add(group: Any) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Check the paper's equation (1) at every branching node of the planar tree."""
-    from topomap.model.facts import read
-    from topomap.model.query import Query
-    from topomap.runtime.watch import Run
-    from topomap.search import branching, traversal
+    from topomap.api.branching import branching_nodes_under
+    from topomap.api.read import read
+    from topomap.runtime.watch import heeding
 
     experience = read(args.instance)
-    query = Query(frozenset(parts_of(args)), args.bound, args.horizon).having("planar")
-    summary = branching.Summary()
     with output(args.output) as out:
-        if args.json:
-            head = formats.headed({"instance": args.instance})
-            out.write(json.dumps(head)[:-1] + ', "nodes": [')
-        with Run(args.timeout) as made:
-            for node in branching.branching(traversal.root(experience, query), made.watch):
-                if args.json:
-                    out.write(",\n" * (made.watch.found > 1) + json.dumps(node.json()))
-                summary.add(node)
-        if args.json:
-            tail = {"summary": summary.totals, **formats.ended(made.fault)}
-            out.write("], " + json.dumps(tail)[1:] + "\n")
-        else:
-            out.write(branching.text(summary.totals))
-            if made.fault:
-                out.write(f"partial: {made.fault}; the figures are of the nodes met until then\n")
-    return made.status(summary.holds)
+        with heeding(args.timeout) as watch:
+            nodes = branching_nodes_under(watch, experience, asked_query(args))
+            if args.json:
+                _write(out, args.instance, nodes)
+            else:
+                for _ in nodes:
+                    pass
+        if not args.json:
+            out.writelines(f"{line}\n" for line in nodes.lines())
+    return exit_status(nodes.fault, nodes.holds)
+
+
+def _write(out: IO[str], instance: str, nodes: "BranchingNodes") -> None:
+    """Write the nodes as JSON, each as it comes, and then what they come to."""
+    head = formats.headed({"instance": instance})
+    out.write(json.dumps(head)[:-1] + ', "nodes": [')
+    for number, node in enumerate(nodes):
+        out.write(",\n" * (number > 0) + json.dumps(node.document()))
+    tail = {"summary": nodes.totals, **formats.ended(nodes.fault)}
+    out.write("], " + json.dumps(tail)[1:] + "\n")

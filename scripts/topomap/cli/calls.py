@@ -6,10 +6,10 @@ from typing import TYPE_CHECKING, Any
 
 from topomap.model.vocabulary import OPTIMIZING, PARTS, STATED
 from topomap.runtime.errors import InputError, say
-from topomap.runtime.limits import MOST_PLACES
 
 if TYPE_CHECKING:
     from topomap.model.experience import Experience
+    from topomap.model.query import Query
     from topomap.solver.share import Crew
     from topomap.worlds.environment import Environment
 
@@ -21,6 +21,13 @@ def parts_of(args: argparse.Namespace, of: Iterable[str] = PARTS) -> dict[str, b
     if getattr(args, "encoding", None) == "paper" and others:
         raise InputError(f"topomap {args.command}: --encoding paper does not state {others[0]}")
     return parts
+
+
+def asked_query(args: argparse.Namespace, of: Iterable[str] = PARTS) -> "Query":
+    """The query that asks for these parts, within the bound and the horizon of the call."""
+    from topomap.api.parts import query_of
+
+    return query_of(parts_of(args, of), bound=args.bound, horizon=args.horizon)
 
 
 def crew_of(args: argparse.Namespace) -> "Crew":
@@ -53,8 +60,5 @@ def environment_of(args: argparse.Namespace) -> "Environment":
         for warning in warnings:
             say(f"warning: {warning}")
         return world
-    if args.rows * args.columns > MOST_PLACES:
-        size = f"{args.rows} x {args.columns}"
-        raise InputError(f"topomap {args.command}: {size}: more than {MOST_PLACES} places")
     thinned = {"thin": args.thin, "seed": args.seed or 0} if args.kind == "maze" else {}
     return environment.environment(args.kind, args.rows, args.columns, **thinned)

@@ -50,8 +50,7 @@ def run(args: argparse.Namespace) -> int:
     from topomap.runtime.watch import heeding
 
     documents = maps.read_maps(args.maps)
-    said = any(document.claims.get("noise") is not None for document in documents)
-    experience = read(args.instance, said or args.noise is not None)
+    experience = read(args.instance, maps.noisy(documents) or args.noise is not None)
     documents = maps.of_instance(documents, args.instance)
     if not documents:
         raise InputError(f"{args.maps}: no maps of {args.instance} in it")

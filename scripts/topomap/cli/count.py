@@ -4,12 +4,11 @@ import argparse
 from typing import Any
 
 from topomap.cli.arguments import add_crew, add_query, add_resume, command
-from topomap.cli.calls import crew_of, parts_of, run_of
+from topomap.cli.calls import asked_query, crew_of, run_of
+from topomap.cli.tell import tell
 from topomap.model.vocabulary import OPTIMIZING, PARTS
-from topomap.runtime import formats
 from topomap.runtime.files import output
 from topomap.runtime.journal import Journal
-from topomap.runtime.status import exit_status
 
 
 def add(group: Any) -> None:
@@ -29,9 +28,8 @@ def add(group: Any) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Count the search tree of an instance, by clingo."""
-    from topomap.api.count import count
-    from topomap.model.facts import read
-    from topomap.paper import statistics
+    from topomap.api.count import count_under
+    from topomap.api.read import read
     from topomap.runtime.watch import heeding
 
     experience = read(args.instance)
@@ -41,18 +39,7 @@ def run(args: argparse.Namespace) -> int:
         output(args.output) as out,
     ):
         with heeding(args.timeout) as watch:
-            counts = count(
-                experience,
-                bound=args.bound,
-                horizon=args.horizon,
-                watch=watch,
-                journal=journal,
-                crew=crew,
-                **parts_of(args),
-            )
-        if args.json:
-            out.write(formats.line({"instance": args.instance, **counts}, counts.fault))
-        else:
-            out.write(statistics.text(counts, counts.fault))
+            counts = count_under(watch, experience, asked_query(args), journal, crew)
+        status = tell(args, out, counts, bool(counts["final"]), args.instance)
         journal.complete = counts.complete
-    return exit_status(counts.fault, bool(counts["final"]))
+    return status

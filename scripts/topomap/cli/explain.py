@@ -4,11 +4,10 @@ import argparse
 from typing import Any
 
 from topomap.cli.arguments import add_query, command
-from topomap.cli.calls import parts_of
+from topomap.cli.calls import asked_query
+from topomap.cli.tell import tell
 from topomap.model.vocabulary import DEMANDS, VOCABULARY
-from topomap.runtime import formats
 from topomap.runtime.files import output
-from topomap.runtime.status import exit_status
 
 
 def add(group: Any) -> None:
@@ -30,23 +29,12 @@ def add(group: Any) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Tell why a statement is so."""
-    from topomap.api.explain import explain
-    from topomap.model.facts import read
+    from topomap.api.explain import explain_under
+    from topomap.api.read import read
     from topomap.runtime.watch import heeding
 
     experience = read(args.instance)
     with output(args.output) as out:
         with heeding(args.timeout) as watch:
-            answer = explain(
-                experience,
-                args.statement,
-                bound=args.bound,
-                horizon=args.horizon,
-                watch=watch,
-                **parts_of(args, DEMANDS),
-            )
-        if args.json:
-            out.write(formats.line({"instance": args.instance, **answer.document()}, answer.fault))
-        else:
-            out.writelines(f"{line}\n" for line in answer.lines())
-    return exit_status(answer.fault, answer.verdict not in ("open", "map"))
+            answer = explain_under(watch, experience, args.statement, asked_query(args))
+        return tell(args, out, answer, answer.verdict not in ("open", "map"), args.instance)

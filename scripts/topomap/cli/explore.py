@@ -10,7 +10,7 @@ from topomap.model.vocabulary import PRUNING
 from topomap.runtime import formats
 from topomap.runtime.errors import InputError, say
 from topomap.runtime.files import output
-from topomap.runtime.limits import LONGEST_WALK
+from topomap.runtime.limits import LONGEST_WALK, MOST_WALKED
 from topomap.runtime.status import exit_status
 
 if TYPE_CHECKING:
@@ -47,7 +47,7 @@ def add(group: Any) -> None:
     )
     add(
         "--steps",
-        type=number(int, 1, 1000),
+        type=number(int, 1, MOST_WALKED),
         default=LONGEST_WALK,
         metavar="N",
         help="look for walks of at most N steps (default: %(default)s)",
@@ -67,7 +67,7 @@ def add(group: Any) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Say where to go next."""
-    from topomap.api.explore import OPTIMAL, candidates, explore
+    from topomap.api.explore import candidates, explore
     from topomap.model.facts import read
     from topomap.runtime.watch import heeding
 
@@ -79,7 +79,7 @@ def run(args: argparse.Namespace) -> int:
     with output(args.output) as out, heeding(args.timeout) as watch:
         among = candidates(
             experience,
-            args.among or OPTIMAL,
+            args.among or "optimal",
             bound=args.bound,
             horizon=args.horizon,
             watch=watch,

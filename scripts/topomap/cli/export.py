@@ -25,14 +25,11 @@ def add(group: Any) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Write a map for other tools."""
-    from topomap.drawing.ready import ready
-    from topomap.exchange.exports import FORMATS
+    from topomap.api.exchange import exported
     from topomap.runtime.files import output
 
     scene, status = scene_of(args)
-    if scene is None:
-        return status
-    ready()
-    with output(args.output) as file:
-        file.write(FORMATS[args.format](scene))
+    if scene is not None:
+        with output(args.output) as file:
+            file.write(exported(scene, args.format))
     return status

@@ -10,7 +10,7 @@ from topomap.cli.arguments import command
 from topomap.cli.generate import instance_of
 from topomap.runtime import formats
 from topomap.runtime.errors import InputError
-from topomap.runtime.files import output, text
+from topomap.runtime.files import output, read_text
 from topomap.runtime.status import DONE
 
 
@@ -61,7 +61,7 @@ def run(args: argparse.Namespace) -> int:
             calls[made.name] += f"# {is_now.st_size} bytes, changed {is_now.st_mtime_ns}\n"
     # At any moment what was made is listed, so that a call that was cut short can be repeated.
     made_before = folder / ".family"
-    old = text(made_before).splitlines() if made_before.exists() else []
+    old = read_text(made_before).splitlines() if made_before.exists() else []
     for name in set(old) - set(calls):
         for left in (folder / f"{name}.lp", folder / f"{name}.args"):
             if left.parent == folder:
@@ -70,7 +70,7 @@ def run(args: argparse.Namespace) -> int:
         file.writelines(f"{name}\n" for name in calls)
     for name, written in calls.items():
         path = folder / f"{name}.args"
-        if not path.exists() or text(path) != written:
+        if not path.exists() or read_text(path) != written:
             with output(str(path)) as file:
                 file.write(written)
     if args.json:

@@ -5,8 +5,8 @@ from pathlib import Path
 from typing import Any
 
 from topomap.cli.arguments import command
-from topomap.runtime.errors import InputError, say
-from topomap.runtime.status import DONE, INTERRUPTED
+from topomap.runtime.errors import say
+from topomap.runtime.status import exit_status
 
 
 def add(group: Any) -> None:
@@ -35,33 +35,13 @@ def add(group: Any) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Draw the paper's figures, and some more, into a folder."""
-    from topomap.drawing.ready import ready
-    from topomap.runtime.extras import need
-    from topomap.runtime.files import output
-    from topomap.runtime.folders import INSTANCES
-    from topomap.runtime.watch import Stopped, heeding
-
-    need("draw", "topomap figures")
-    ready()
-    from topomap.drawing import sheet
-    from topomap.paper.figures import figures
+    from topomap.api.figures import figures_under
+    from topomap.runtime.watch import Attempt, heeding
 
     folder = Path(args.directory)
-    with heeding() as watch:
-        made = figures(Path(args.instances or INSTANCES), watch)
-        chosen = args.figure or list(made)
-        for name in chosen:
-            if name not in made:
-                raise InputError(f"{name}: the figures are {', '.join(made)}")
-        try:
-            for name in chosen:
-                watch.title(name)
-                figure = made[name]()
-                watch.tick()
-                with output(str(folder / f"{name}.svg"), parents=True, binary=True) as out:
-                    sheet.save(figure, out, "svg")
-                print(folder / f"{name}.svg")
-        except Stopped as stop:
-            say(f"{folder}: partial: {stop}")
-            return INTERRUPTED
-    return DONE
+    with heeding() as watch, Attempt() as attempt:
+        for path in figures_under(watch, folder, args.figure, args.instances):
+            print(path)
+    if attempt.fault:
+        say(f"{folder}: partial: {attempt.fault}")
+    return exit_status(attempt.fault, True)

@@ -23,10 +23,10 @@ def add(group: Any) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Read a map that ``export`` wrote, and write it as ``solve --json`` does."""
-    from topomap.exchange.imports import import_map
+    from topomap.api.exchange import imported
     from topomap.runtime.files import output
 
-    content = import_map(args.file)
+    content = imported(args.file)
     with output(args.output) as file:
         file.write(content)
     return DONE

@@ -3,7 +3,7 @@
 import argparse
 from typing import TYPE_CHECKING
 
-from topomap.cli.calls import parts_of
+from topomap.cli.calls import asked_query
 from topomap.model.vocabulary import PRUNING
 from topomap.runtime.errors import InputError, say
 from topomap.runtime.status import exit_status
@@ -14,16 +14,15 @@ if TYPE_CHECKING:
 
 def scene_of(args: argparse.Namespace) -> "tuple[Scene | None, int]":
     """The map, and the exit status: partial, if it may not be the best."""
-    from topomap.api.parts import query_of
-    from topomap.drawing.scenes import scenes_of
+    from topomap.api.scenes import scenes_under
     from topomap.model import words
     from topomap.runtime.extras import need
     from topomap.runtime.watch import heeding
 
     need("draw", f"topomap {args.command}")
-    query = query_of(parts_of(args, PRUNING), bound=args.bound, horizon=args.horizon)
+    query = asked_query(args, PRUNING)
     with heeding(args.timeout) as watch:
-        found, fault, searched = scenes_of(args.file, query, watch, args.given)
+        found, fault, searched = scenes_under(watch, args.file, query, args.given)
     number = args.map or 1
     source = args.file if args.given is None else args.given
     if fault:

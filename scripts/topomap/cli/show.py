@@ -28,21 +28,25 @@ def add(group: Any) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Print a map."""
-    from topomap.drawing.ready import ready
+    from topomap.api.draw import characters
 
     scene, status = scene_of(args)
-    if scene is None:
-        return status
-    ready()
-    from topomap.drawing import terminal
+    if scene is not None:
+        columns = max(LEAST, min(shutil.get_terminal_size().columns, MOST))
+        sys.stdout.write(characters(scene, columns, _is_coloured(), not _has_signs()))
+    return status
 
-    columns = shutil.get_terminal_size().columns
-    coloured = sys.stdout.isatty() and os.environ.get("TERM") != "dumb"
-    coloured &= not os.environ.get("NO_COLOR")
-    text = terminal.text(scene, max(LEAST, min(columns, MOST)), coloured)
+
+def _is_coloured() -> bool:
+    """Whether standard output shows colours."""
+    is_terminal = sys.stdout.isatty() and os.environ.get("TERM") != "dumb"
+    return is_terminal and not os.environ.get("NO_COLOR")
+
+
+def _has_signs() -> bool:
+    """Whether standard output has the signs that links are drawn with."""
     try:
         "─│╴⠿→".encode(getattr(sys.stdout, "encoding", None) or "utf-8")
     except UnicodeEncodeError:
-        text = text.translate(terminal.ASCII)
-    sys.stdout.write(text)
-    return status
+        return False
+    return True

@@ -86,7 +86,7 @@ def run(args: argparse.Namespace) -> int:
         if instance:
             instance.write(f"% what a robot did and saw in {made.name}\n\n")
             instance.write(made.experience.facts())
-        out.write(formats.line(made.json(), made.fault) if args.json else str(made))
+        out.write(formats.line(made.document(), made.fault) if args.json else str(made))
     return exit_status(made.fault, made.outcome.found)
 
 
@@ -131,10 +131,10 @@ def _list(args: argparse.Namespace) -> int:
             for call, parsed, environment in calls:
                 watch.title(call)
                 made = _simulated(parsed, environment, watch)
-                if made.end not in ENDS:
-                    fault = made.end
+                if made.end not in ENDS or made.outcome.others.fault:
+                    fault = made.fault
                     break
-                rows.append({**made.json(), "environment": call})
+                rows.append({**made.document(), "environment": call})
         if any(row["end"] not in ENDED for row in rows):
             fault = fault or "steps"
         if args.json:

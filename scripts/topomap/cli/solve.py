@@ -67,7 +67,7 @@ def add(group: Any) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Enumerate the maps of each instance."""
-    from topomap.model.facts import read
+    from topomap.api.read import read
 
     _combined(args)
     inputs = []
@@ -139,7 +139,7 @@ def _solve_one(
         with Attempt() as attempt:
             for one in answer.stream():
                 report.add(one.found)
-        fault = answer.fault or attempt.fault
+        fault = attempt.fault or answer.fault
         report.end(fault)
     return fault, bool(report.count)
 

@@ -20,11 +20,11 @@ from topomap.model.topology import TopologicalMap
 from topomap.model.vocabulary import PARTS, PROPERTIES
 from topomap.runtime import files, formats
 from topomap.runtime.errors import InputError
-from topomap.runtime.files import text
+from topomap.runtime.files import read_text
 from topomap.runtime.limits import LARGEST
 from topomap.solver.solving import misreadings
 
-MOST_BYTES = 2**32
+MOST_BYTES_OF_MAPS = 2**32
 LONGER = 10  # times as many dstates as steps: no map of the experience
 _AT = re.compile(r"at\((-?\d+),(-?\d+),(-?\d+)\)", re.ASCII)
 BEST_FIRST = "closed, best-first"
@@ -79,13 +79,13 @@ class Document:
             yield "closed"
 
 
-def read_maps(path: str, most: int = MOST_BYTES) -> list[Document]:
+def read_maps(path: str, most: int = MOST_BYTES_OF_MAPS) -> list[Document]:
     """The maps in a file of ``most`` bytes at most. Raises InputError, one line, where it
     holds something else."""
-    return parse(text(path, most), path)
+    return parse_maps(read_text(path, most), path)
 
 
-def parse(content: str, path: str) -> list[Document]:
+def parse_maps(content: str, path: str) -> list[Document]:
     """The maps in a text; ``path`` names it in errors."""
     try:
         data = json.loads(content)
@@ -93,16 +93,22 @@ def parse(content: str, path: str) -> list[Document]:
         raise InputError(
             f"{path}: not a JSON text, as topomap solve --json and clingo --outf=2 write it"
         ) from None
-    formats.demand(path, data)
+    return documents(path, data)
+
+
+def documents(where: str, data: Any) -> list[Document]:
+    """The maps in what was read from JSON: of one instance or of several, by topomap or clingo, or
+    a list of maps; ``where`` names it in errors. Raises InputError, one line."""
+    formats.demand(where, data)
     if isinstance(data, dict) and "Call" in data:
-        return [_of_clingo(path, data)]
-    documents = data["results"] if isinstance(data, dict) and "results" in data else [data]
-    if not isinstance(documents, list):
-        raise InputError(f"{path}: results: no list")
-    many = len(documents) > 1
+        return [_of_clingo(where, data)]
+    results = data["results"] if isinstance(data, dict) and "results" in data else [data]
+    if not isinstance(results, list):
+        raise InputError(f"{where}: results: no list")
+    many = len(results) > 1
     return [
-        document(f"{path}: result {number}" if many else path, one)
-        for number, one in enumerate(documents, 1)
+        document(f"{where}: result {number}" if many else where, one)
+        for number, one in enumerate(results, 1)
     ]
 
 
@@ -179,6 +185,11 @@ def _is_at(at: object) -> bool:
         isinstance(dstate, list) and len(dstate) == 3 and all(map(is_number, dstate))
         for dstate in at
     )
+
+
+def noisy(given: list[Document]) -> bool:
+    """Whether some of the maps are said to be allowed to disbelieve what was seen."""
+    return any(one.claims.get("noise") is not None for one in given)
 
 
 def of_instance(documents: list[Document], instance: str) -> list[Document]:

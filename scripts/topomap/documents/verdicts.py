@@ -15,6 +15,7 @@ from topomap.documents.maps import (
 )
 from topomap.model import words
 from topomap.model.experience import Experience, Misread
+from topomap.model.reply import Reply
 from topomap.model.topology import Gateway, TopologicalMap
 from topomap.runtime.errors import InputError
 
@@ -33,10 +34,11 @@ class Verdict:
         return not self.violations and not self.faults
 
 
-@dataclass
-class Judged:
+@dataclass(repr=False)
+class Judged(Reply):
     """The verdicts on ``count`` maps of an experience of ``steps`` steps, of which ``demands``
-    were asked; ``fault`` says why not all were judged, if so."""
+    were asked; ``fault`` says why not all were judged, if so. In an ``if`` it is true when all
+    were judged, and none is unsound."""
 
     count: int
     steps: int
@@ -45,14 +47,12 @@ class Judged:
     fault: str | None = None
 
     @property
-    def complete(self) -> bool:
-        """Whether all the maps were judged."""
-        return self.fault is None
-
-    @property
     def unsound(self) -> list[Verdict]:
         """The verdicts on the maps with which something is wrong."""
         return [verdict for verdict in self.verdicts if not verdict.sound]
+
+    def __bool__(self) -> bool:
+        return self.complete and not self.unsound
 
     @property
     def short(self) -> int:
@@ -60,7 +60,6 @@ class Judged:
         return sum(verdict.short for verdict in self.verdicts)
 
     def document(self) -> dict[str, Any]:
-        """The same as JSON."""
         return {
             "demands": self.demands,
             "unsound": [asdict(verdict) for verdict in self.unsound],
@@ -70,7 +69,6 @@ class Judged:
         }
 
     def lines(self) -> Iterator[str]:
-        """The same in lines to read."""
         for verdict in self.unsound:
             broken = [f"violation({rule},{step})" for rule, step in verdict.violations]
             yield f"{verdict.where}: {'; '.join(broken + verdict.faults)}"

@@ -14,7 +14,7 @@ import numpy as np
 
 from topomap.drawing.bent import STEPS, bent
 from topomap.drawing.mesh import Points, cross, faces_of
-from topomap.drawing.planarize import lacking, planar_part, routed
+from topomap.drawing.planarize import left_out, planar_part, routed
 from topomap.drawing.springs import STUB
 from topomap.model.topology import Gateway, Place, TopologicalMap
 
@@ -49,7 +49,7 @@ def layout(world: TopologicalMap, ahead: Gateway | None = None, steps: int = STE
     part = planar_part(world)
     lines = _by_compass(part) if part is world else None
     if lines is None:
-        lines = bent(*routed(part, lacking(part, world)), steps)
+        lines = bent(*routed(part, left_out(part, world)), steps)
     return _layout(world, part, lines, ahead)
 
 
@@ -68,7 +68,7 @@ def _layout(
     ahead: Gateway | None,
 ) -> Layout:
     """The drawing, turned so that ``ahead`` leads to the right."""
-    crossing = lacking(part, world)
+    crossing = left_out(part, world)
     faces, outer = ([], -1) if crossing else faces_of(world)
     first = ahead or next(world.gateways(), None)
     if first is None:

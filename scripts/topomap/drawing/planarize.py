@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from topomap.model.topology import Gateway, Place, TopologicalMap
 from topomap.runtime import nx
 
-ORDERS = 30  # of links, for a planar part
+LINK_ORDERS = 30  # of links, for a planar part
 
 
 def planar_part(world: TopologicalMap) -> TopologicalMap:
@@ -16,16 +16,16 @@ def planar_part(world: TopologicalMap) -> TopologicalMap:
     rest cross the fewest links counts."""
     if not world.genus():
         return world
-    draws = (random.Random(seed) for seed in range(ORDERS))
+    draws = (random.Random(seed) for seed in range(LINK_ORDERS))
     parts = (_planar(world, draw.sample(world.edges(), len(world.edges()))) for draw in draws)
 
     def crossed(part: TopologicalMap) -> tuple[int, int]:
-        return len(routed(part, lacking(part, world))[1]), -len(part.links)
+        return len(routed(part, left_out(part, world))[1]), -len(part.links)
 
     return min(parts, key=crossed)
 
 
-def lacking(part: TopologicalMap, world: TopologicalMap) -> list[tuple[Gateway, Gateway]]:
+def left_out(part: TopologicalMap, world: TopologicalMap) -> list[tuple[Gateway, Gateway]]:
     """The links of a map that a part of it lacks."""
     return [(out, end) for out, end in world.edges() if out not in part.links]
 

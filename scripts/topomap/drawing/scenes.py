@@ -1,4 +1,4 @@
-"""Maps to be shown: the best ones of an instance, or those in a file of maps."""
+"""Maps to be shown: those that were found in an instance, or those in a file of maps."""
 
 from collections import Counter, defaultdict
 from collections.abc import Sequence
@@ -10,19 +10,14 @@ from typing import Any
 from topomap.documents import maps
 from topomap.documents.check import STEP_RULES
 from topomap.model.experience import MOST_SLOTS, Experience
-from topomap.model.facts import parse
-from topomap.model.found import UNPROVED, Found
-from topomap.model.query import Query
+from topomap.model.found import Found
 from topomap.model.topology import Gateway, TopologicalMap
 from topomap.model.words import markers, plural, short
 from topomap.runtime import nx
 from topomap.runtime.errors import InputError, printable
-from topomap.runtime.files import text
 from topomap.runtime.limits import LARGEST
-from topomap.runtime.watch import Attempt, Watch
-from topomap.solver import solving
 
-MOST_PLACES = 1000  # in a picture
+MOST_DRAWN = 1000  # in a picture
 
 
 @dataclass(frozen=True)
@@ -91,47 +86,6 @@ def _only(kind: str) -> str:
     return f"the only map that is {kind}" if kind.startswith("best") else f"the only {kind} map"
 
 
-def scenes_of(
-    path: str, query: Query, watch: Watch, given: str | None = None
-) -> tuple[list[Scene], str | None, bool]:
-    """The maps of a file; why they may not be all of them, if so; and whether they were searched
-    for here.
-
-    Of an instance they are the optimal ones, or the best so far, that have the parts of the
-    query, or with a file of maps ``given`` those in it; of a text of ``solve --json`` those in it.
-    Of a file, there is a reason only where it has no map. Raises InputError, one line.
-    """
-    if given is not None:
-        if query != Query(frozenset()):
-            raise InputError(f"{given}: these are maps, so parts, bound and horizon cannot be used")
-        if path == given == "-":
-            raise InputError("-: standard input is the instance or the maps, not both")
-        documents = maps.of_instance(maps.read_maps(given), path)
-        if not documents:
-            raise InputError(f"{given}: no maps of {path} in it")
-        noisy = any("misread" in entry for document in documents for entry in document.maps)
-        seen = parse(text(path), path, noisy)
-        found = [scene for one in documents for scene in of_instance(seen, path, one)]
-        return found, _missing(documents, found), False
-    content = text(path, maps.MOST_BYTES)
-    if content.lstrip()[:1] in ("{", "["):
-        if query != Query(frozenset()):
-            raise InputError(f"{path}: these are maps, so parts, bound and horizon cannot be used")
-        documents = maps.parse(content, path)
-        found = [scene for document in documents for scene in of_document(document)]
-        return found, _missing(documents, found), False
-    return *best(parse(content, path), path, query, watch), True
-
-
-def _missing(documents: Sequence[maps.Document], found: Sequence[Scene]) -> str | None:
-    """Why there is no map in documents, unless that is all that there is to find."""
-    if found:
-        return None
-    cut = [document for document in documents if not document.whole]
-    told = [str(document.claims["fault"]) for document in cut if document.claims.get("fault")]
-    return (told or ["it is not said to be complete"])[0] if cut else None
-
-
 def of_instance(seen: Experience, name: str, document: maps.Document) -> list[Scene]:
     """The maps of a document that tells no more of them than ``at``, as clingo does, or whatever
     else it tells. Raises InputError, one line, if one is none of this experience."""
@@ -160,26 +114,17 @@ def of_instance(seen: Experience, name: str, document: maps.Document) -> list[Sc
     return scenes
 
 
-def best(
-    experience: Experience, name: str, query: Query, watch: Watch
-) -> tuple[list[Scene], str | None]:
-    """The optimal maps, or the best so far, in order; and why they may not be all, if so."""
-    found: list[Found] = []
-    with Attempt() as attempt:
-        for one in filter(None, solving.best(experience, query, watch, solving.hypotheses)):
-            if not (one.proved and found and found[0].proved):  # better than those before
-                found.clear()
-            found.append(one)
-    found.sort(key=lambda one: one.at)
-    kinds = [one.kind if one.proved else UNPROVED for one in found]
+def of_found(experience: Experience, name: str, found: Sequence[Found], whole: bool) -> list[Scene]:
+    """Maps that were found in an experience from there, which are all that there are if
+    ``whole``."""
     return [
         Scene(
-            *(experience.map_of(one.at), one.at, name, number, len(found), kind),
-            whole=not attempt.fault,
+            *(experience.map_of(one.at), one.at, name, number, len(found), one.kind),
+            whole=whole,
             marker=markers(experience, one.at),
         )
-        for number, (one, kind) in enumerate(zip(found, kinds, strict=True), 1)
-    ], attempt.fault
+        for number, one in enumerate(found, 1)
+    ]
 
 
 def of_document(document: maps.Document) -> list[Scene]:
@@ -231,8 +176,8 @@ def world_of(slots: int, entry: dict[str, Any], where: str) -> TopologicalMap:
             raise ValueError
     except (LookupError, TypeError, ValueError, OverflowError):
         raise InputError(f"{where}: places or links are not as solve --json writes them") from None
-    if not stars or len(stars) > MOST_PLACES:
-        raise InputError(f"{where}: {len(stars)} places; a picture has 1 to {MOST_PLACES}")
+    if not stars or len(stars) > MOST_DRAWN:
+        raise InputError(f"{where}: {len(stars)} places; a picture has 1 to {MOST_DRAWN}")
     if not 2 <= slots <= MOST_SLOTS or slots % 2:
         raise InputError(f"{where}: slots is not an even number from 2 to {MOST_SLOTS}")
     times = Counter(ends)

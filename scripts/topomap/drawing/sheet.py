@@ -150,7 +150,7 @@ def _spans(axes: Axes) -> tuple[float, float]:
     return x1 - x0, y1 - y0
 
 
-def save(figure: Figure, file: IO[bytes], format: str) -> None:
+def write(figure: Figure, file: IO[bytes], format: str) -> None:
     """Write a figure: svg, png or pdf, without the date."""
     about = {"svg": {"Date": None}, "pdf": {"CreationDate": None}, "png": {"Software": None}}
     with mpl.rc_context(STYLE), warnings.catch_warnings():

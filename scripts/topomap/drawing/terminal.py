@@ -76,7 +76,7 @@ def _in_colour(text: str, colour: str) -> str:
     return f"\x1b[{colour}m{text}\x1b[0m" if colour else text
 
 
-def text(scene: Scene, width: int, coloured: bool = False) -> str:
+def drawn(scene: Scene, width: int, coloured: bool = False) -> str:
     """A map in a terminal of that many columns. Maps of lines are as wide as they need; maps of
     dots fit, unless numbers would fall onto each other: then they are up to four times as wide."""
     world = scene.world

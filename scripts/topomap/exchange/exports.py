@@ -168,6 +168,6 @@ def _term(node: Place | Gateway) -> str:
     return f"({node[0]},{node[1]})" if isinstance(node, tuple) else str(node)
 
 
-FORMATS: dict[str, Callable[[Scene], str]] = dict(
+WRITERS: dict[str, Callable[[Scene], str]] = dict(
     zip(EXPORTS, (graphml, node_link, dot, clingraph), strict=True)
 )

@@ -9,14 +9,14 @@ from topomap.drawing.scenes import of_document
 from topomap.exchange.exports import LISTS, graph_of
 from topomap.runtime import formats, nx
 from topomap.runtime.errors import InputError
-from topomap.runtime.files import data
+from topomap.runtime.files import read_bytes
 from topomap.worlds.network import read_graphml
 
 
 def import_map(file: str) -> str:
     """What ``solve --json`` writes of the map in a file of GraphML or node-link JSON. Raises
     InputError, one line, if there is none that ``export`` writes."""
-    content = data(file)
+    content = read_bytes(file)
     if content.lstrip(b"\xef\xbb\xbf \t\r\n")[:1] == b"<":
         graph = read_graphml(file, content, int)
     else:

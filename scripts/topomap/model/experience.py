@@ -1,9 +1,11 @@
 """Experiences: what an exploration does and sees."""
 
 from collections.abc import Container, Iterable
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, fields
 
+from topomap.model.terms import spelt
 from topomap.model.topology import Gateway, Place, TopologicalMap
+from topomap.runtime.checks import collection, integer, shown, whole
 
 DState = tuple[int, int]
 Misread = tuple[int, int | str]  # a step, and a gateway or a landmark that was missed or imagined
@@ -19,7 +21,8 @@ class Experience:
     clockwise from the gateway where the agent stands, and landmarks as terms of clingo, such as
     ``"pub"``; ``turns[t - 1]`` is the turn of step t, in slots clockwise. ``drops``, ``picks``
     and ``markers`` are the steps after which the marker is put down, taken up and seen. Lists
-    will do: ``Experience(4, [[0], [0, 1], [0]], [0, 1])``.
+    will do: ``Experience(4, [[0], [0, 1], [0]], [0, 1])``. What is kept is plain: numbers are
+    ``int``, and landmarks are spelt as clingo spells them.
     """
 
     slots: int
@@ -40,35 +43,70 @@ class Experience:
         picks: Iterable[int] = (),
         markers: Iterable[int] = (),
     ):
-        """Raises ValueError if there is not one view more than turns, and as many sets of
-        landmarks (by default there are none)."""
-        seen, done = tuple(map(frozenset, views)), tuple(turns)
+        """What was seen and done. Whether it can be so is told when it is first used: by
+        InputError, with the step, as for a file.
+
+        Parameters:
+            slots: the number of directions at each place.
+            views: the slots that are seen after each step, from 0.
+            turns: the turn of each step, from 1, in slots clockwise.
+            landmarks: the landmarks that are seen after each step, from 0; by default none.
+            drops, picks, markers: the steps after which the marker is put down, taken up, seen.
+
+        Raises:
+            ValueError: there is not one view more than turns, or not as many sets of landmarks;
+                a slot or a step that is no whole number, a step that there is not, a landmark
+                that is not a ground term of clingo.
+            TypeError: something else where a collection is wanted, such as a text.
+        """
+        seen = tuple(
+            frozenset(view if _is_plain(view, int) else _slots(f"views[{step}]", view))
+            for step, view in enumerate(collection("views", views))
+        )
+        done = tuple(_slots("turns", turns))
         signs = (frozenset[str](),) * len(seen)
         if landmarks is not None:
-            signs = tuple(frozenset(of) for of in landmarks)
+            signs = tuple(
+                frozenset(of) if _is_plain(of) else _terms(f"landmarks[{step}]", of)
+                for step, of in enumerate(collection("landmarks", landmarks))
+            )
         if not len(done) + 1 == len(seen) == len(signs):
             told = f"{len(seen)} views, {len(done)} turns, landmarks after {len(signs)} steps"
             raise ValueError(f"{told}: of n turns there are n + 1 views")
-        values = slots, seen, done, signs, frozenset(drops), frozenset(picks), frozenset(markers)
+        marks = [
+            frozenset(whole(f"{name}: step", step, 0, len(done)) for step in collection(name, of))
+            for name, of in (("drops", drops), ("picks", picks), ("markers", markers))
+        ]
+        values = integer("slots", slots), seen, done, signs, *marks
         for one, value in zip(fields(self), values, strict=True):
             object.__setattr__(self, one.name, value)
 
     @property
     def steps(self) -> int:
+        """How many steps there are; after step 0, where it starts, the agent has seen the first
+        view, but has not moved."""
         return len(self.turns)
 
     def cut(self, horizon: int) -> "Experience":
         """The experience up to and including step ``horizon``."""
-        return Experience(
-            self.slots,
-            self.views[: horizon + 1],
-            self.turns[:horizon],
-            self.landmarks[: horizon + 1],
-            *(
-                frozenset(step for step in steps if step <= horizon)
-                for steps in (self.drops, self.picks, self.markers)
-            ),
+        marks = {
+            name: frozenset(step for step in getattr(self, name) if step <= horizon)
+            for name in ("drops", "picks", "markers")
+        }
+        return self._but(
+            views=self.views[: horizon + 1],
+            turns=self.turns[:horizon],
+            landmarks=self.landmarks[: horizon + 1],
+            **marks,
         )
+
+    def _but(self, **changed: object) -> "Experience":
+        """The same experience but for what is changed, which is known to be plain: it is not
+        checked again, as this is done for each map that is told."""
+        made = object.__new__(Experience)
+        for one in fields(self):
+            object.__setattr__(made, one.name, changed.get(one.name, getattr(self, one.name)))
+        return made
 
     def marker(self) -> tuple[tuple[int, bool] | None, ...]:
         """For each step at whose end the marker lies somewhere: after which step it was put
@@ -92,7 +130,7 @@ class Experience:
                 views[step] ^= {what}
             else:
                 landmarks[step] ^= {what}
-        return replace(self, views=tuple(views), landmarks=tuple(landmarks))
+        return self._but(views=tuple(views), landmarks=tuple(landmarks))
 
     def misled(self) -> list[int]:
         """The steps after which the agent stands at no gateway, or leaves by none, according to
@@ -122,6 +160,32 @@ class Experience:
             links[out], links[arrival] = arrival, out
         landmarks = {place: self.landmarks[place] for place in stars}
         return TopologicalMap(self.slots, stars, links, landmarks)
+
+
+def _is_plain(given: object, *kinds: type) -> bool:
+    """Whether something is a frozen set of these types and no others already: most are."""
+    return type(given) is frozenset and {*map(type, given)} <= {*kinds}
+
+
+def _slots(name: str, given: Iterable[int]) -> list[int]:
+    """Slots of any type of whole number, as int."""
+    return [
+        slot if type(slot) is int else integer(f"{name}: slot", slot)
+        for slot in collection(name, given)
+    ]
+
+
+def _terms(name: str, given: Iterable[str]) -> frozenset[str]:
+    """Landmarks, each spelt as clingo spells it."""
+    terms = set()
+    for term in collection(name, given):
+        if not isinstance(term, str):
+            raise ValueError(f"{name}: {shown(term)} is not a text, such as 'pub' or 'f(1,2)'")
+        try:
+            terms.add(spelt(term))
+        except ValueError as fault:
+            raise ValueError(f"{name}: {fault}") from None
+    return frozenset(terms)
 
 
 def observe(

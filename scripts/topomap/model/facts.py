@@ -15,10 +15,10 @@ from pathlib import Path
 import clingo
 
 from topomap.model.experience import MARKER, MOST_SLOTS, Experience, marker_fault, marker_out
+from topomap.model.terms import STRING, cut_short, ground, quoted
 from topomap.runtime import files
 from topomap.runtime.errors import InputError
 
-DEEPEST = 100  # clingo's parser crashes on terms that are very deep
 SIGNATURES = {  # the facts of an instance
     "slots": "slots(K)",
     "view": "view(T,S)",
@@ -34,7 +34,7 @@ def read(path: str | Path, noisy: bool = False) -> Experience:
     """The experience in an instance file; a ``noisy`` one may turn to gateways that were not
     seen, and views may lack slot 0. Raises InputError, one line, on bad input: the first of
     the faults that ``Facts.faults`` finds."""
-    return parse(files.text(path), str(path), noisy)
+    return parse(files.read_text(path), str(path), noisy)
 
 
 def parse(text: str, source: str, noisy: bool = False) -> Experience:
@@ -228,13 +228,10 @@ def misfit(fact: clingo.Symbol, forms: Mapping[str, str] = SIGNATURES) -> str | 
 
 # Outside a block comment: its beginning, a line comment, the two stops of an interval, a
 # string, a full stop, or other text. Block comments are nested.
-_STRING = r'"(?:[^"\\\n]++|\\.)*+"'
-_TOKEN = re.compile(rf'%\*|%[^\n]*|\.\.|{_STRING}|\.|[^%".]+|"', re.DOTALL)
+_TOKEN = re.compile(rf'%\*|%[^\n]*|\.\.|{STRING}|\.|[^%".]+|"', re.DOTALL)
 _COMMENT = re.compile(r"%\*|\*%|[^%*]+|[%*]", re.DOTALL)
 _FACT = re.compile(r"-?[a-z]\w*\(.*\)", re.DOTALL)
-_SPACE = re.compile(rf"({_STRING})|\s+", re.DOTALL)
 _NO_STOP = re.compile(r"\)\s+[a-z]\w*\(")
-_BRACKET = re.compile(rf"{_STRING}|[(|)]", re.DOTALL)
 
 
 def ground_facts(text: str, line: int = 1) -> Iterator[tuple[int, clingo.Symbol | str]]:
@@ -262,40 +259,14 @@ def ground_facts(text: str, line: int = 1) -> Iterator[tuple[int, clingo.Symbol 
             fact.append(token)
         line += token.count("\n")
     if fact or depth:
-        yield begins, f"{_short(''.join(fact)) if fact else 'a comment'} does not end"
+        yield begins, f"{quoted(''.join(fact)) if fact else 'a comment'} does not end"
 
 
 def _fact(text: str) -> clingo.Symbol | str:
     """The ground fact of a text, or why there is none."""
     if not _FACT.fullmatch(text):
-        return f"{_short(text)} is not a ground fact"
-    if len(text) > DEEPEST and _depth(text) > DEEPEST:
-        return f"{_short(text)} is nested deeper than {DEEPEST}"
-    try:
-        symbol = clingo.parse_term(text, logger=lambda *_: None)
-    except (RuntimeError, UnicodeDecodeError):  # clingo's message may cut a letter in two
-        stop = " (is a full stop missing?)" if _NO_STOP.search(text) else ""
-        return f"{_short(text)} is not a ground fact{stop}"
-    # clingo computes, and wraps numbers that are too large, without a word.
-    if str(symbol) != _SPACE.sub(r"\1", text):
-        return f"{_short(text)} is not a plain fact: clingo reads it as {cut_short(str(symbol))}"
-    return symbol
-
-
-def _depth(text: str) -> int:
-    """How deep the brackets of a text are nested, or more."""
-    depth = deepest = 0
-    for bracket in _BRACKET.findall(text):
-        depth += (bracket in "(|") - (bracket == ")")
-        deepest = max(deepest, depth)
-    return deepest
-
-
-def _short(text: str) -> str:
-    return repr(cut_short(text))
-
-
-def cut_short(text: str) -> str:
-    """A text in one line for a message."""
-    line = " ".join(text[:1000].split())
-    return line if len(line) <= 40 else line[:37] + "..."
+        return f"{quoted(text)} is not a ground fact"
+    read = ground(text, "fact")
+    if isinstance(read, str) and _NO_STOP.search(text):
+        return f"{read} (is a full stop missing?)"
+    return read

@@ -32,7 +32,7 @@ def judged(path: str) -> dict[str, Any]:
     told: dict[str, Any] = {"file": path, "valid": False}
     told |= dict.fromkeys(("steps", "slots", "views", "landmarks"))
     try:
-        faults = [*islice(facts.faults(files.text(path)), MOST + 1)]
+        faults = [*islice(facts.faults(files.read_text(path)), MOST + 1)]
     except InputError as error:
         faults = [Fault(str(error).removeprefix(f"{path}: "))]
     warnings: list[Fault] = []

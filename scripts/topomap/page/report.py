@@ -22,7 +22,7 @@ from topomap.model.found import Cube
 from topomap.model.query import Query
 from topomap.model.topology import gid
 from topomap.model.vocabulary import PARTS, PRUNING
-from topomap.page.exploration import Exploration
+from topomap.page.chapter import Chapter
 from topomap.page.replay import MOST, SHOWN, fate, in_force
 from topomap.runtime.errors import printable
 from topomap.runtime.version import VERSION
@@ -60,7 +60,7 @@ class Asked:
         return shlex.join(["topomap", "report", *named])
 
 
-def page(asked: Asked, made: Sequence[Exploration]) -> str:
+def page(asked: Asked, made: Sequence[Chapter]) -> str:
     """The page about explorations that were looked at."""
     import jinja2
 
@@ -102,7 +102,7 @@ def _hash(text: str) -> str:
     return f"'sha256-{base64.b64encode(hashlib.sha256(text.encode()).digest()).decode()}'"
 
 
-def _about(asked: Asked, number: int, about: Exploration) -> dict[str, Any]:
+def _about(asked: Asked, number: int, about: Chapter) -> dict[str, Any]:
     """What the template tells of an exploration."""
     from markupsafe import Markup
 
@@ -204,7 +204,7 @@ class Glyphs:
         return "".join(f'<g id="{name}">{body}</g>' for body, name in self.names.items())
 
 
-def _shown(about: Exploration, at: Cube, number: int, glyphs: Glyphs) -> dict[str, Any]:
+def _shown(about: Chapter, at: Cube, number: int, glyphs: Glyphs) -> dict[str, Any]:
     """A hypothesis of a step."""
     from markupsafe import Markup
 

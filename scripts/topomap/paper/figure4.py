@@ -56,7 +56,7 @@ def differences(row: dict[str, Any]) -> list[str]:
     ]
 
 
-def text(rows: list[dict[str, Any]]) -> str:
+def table_text(rows: list[dict[str, Any]]) -> str:
     """A table to read: for each figure ours, and below it the paper's."""
 
     def line(word: str, key: str) -> list[str]:

@@ -23,6 +23,7 @@ from topomap.paper import figure4
 from topomap.runtime.watch import Stopped, Watch
 from topomap.search import branching, traversal
 from topomap.solver import solving
+from topomap.solver.enumeration import best_maps
 from topomap.worlds.environment import grid
 from topomap.worlds.instance import instance
 
@@ -52,7 +53,7 @@ def figures(folder: Path, watch: Watch) -> dict[str, Callable[[], Figure]]:
     }
 
 
-def maps(
+def all_scenes(
     experience: Experience, watch: Watch, *parts: str, places: int | None = None
 ) -> list[Scene]:
     """All maps with these properties, or the best of them, in order."""
@@ -61,12 +62,12 @@ def maps(
     return [Scene(experience.map_of(at), at, "") for at in proved]
 
 
-def best(experience: Experience, watch: Watch, *parts: str) -> list[Scene]:
+def best_scenes(experience: Experience, watch: Watch, *parts: str) -> list[Scene]:
     """The optimal maps, or the best so far. Raises Stopped."""
-    found, fault = scenes.best(experience, "", Query(frozenset(parts)), watch)
+    found, fault = best_maps(experience, Query(frozenset(parts)), watch)
     if fault:
         raise Stopped(fault)
-    return found
+    return scenes.of_found(experience, "", found, True)
 
 
 def titled(scene: Scene, caption: str) -> Scene:
@@ -77,7 +78,7 @@ def first(watch: Watch) -> Figure:
     """For the first page: what a walk sees, place by place, two of the maps that are consistent
     with it, and the one that is closed, which is the real one."""
     made = instance(grid(2, 3), "EESWWNES")
-    found = maps(made.experience, watch)
+    found = all_scenes(made.experience, watch)
     (real,) = [scene for scene in found if not scene.world.pending()]
     if tuple(real.at) != made.truth:
         raise ValueError("the closed map is not the real one")
@@ -195,7 +196,7 @@ def figure1(experience: Experience, watch: Watch) -> Figure:
     """The paper's Figure 1: the 3x3 grid, and the two maps that no exploration tells apart."""
     made = instance(grid(3, 3), "snake")
     real = Scene(experience.map_of(made.truth), (), "")
-    planar, other = sorted(best(experience, watch), key=lambda scene: scene.world.genus())
+    planar, other = sorted(best_scenes(experience, watch), key=lambda scene: scene.world.genus())
     return sheet.picture(
         [
             titled(real, "(a) the environment"),
@@ -208,7 +209,7 @@ def figure1(experience: Experience, watch: Watch) -> Figure:
 def figure3(watch: Watch) -> Figure:
     """The paper's Figure 3: next(e1) = pred(rev(e1)), and the walks round three faces."""
     made = instance(grid(2, 3), "snake")
-    (found,) = maps(made.experience, watch, "planar", "closed", "perpendicular")
+    (found,) = all_scenes(made.experience, watch, "planar", "closed", "perpendicular")
     scene = replace(found, at=())
     with mpl.rc_context(sheet.STYLE):
         figure = _figure(6.4, 2.6)
@@ -319,10 +320,10 @@ def equation1(experience: Experience, watch: Watch) -> Figure:
 def figure5(experience: Experience, watch: Watch) -> Figure:
     """The paper's Figure 5: the real 4x4 map, one of the 255 others that are closed and
     perpendicular, and the two optimal ones."""
-    square = maps(experience, watch, "closed", "perpendicular", places=16)
+    square = all_scenes(experience, watch, "closed", "perpendicular", places=16)
     (real,) = [scene for scene in square if scene.world.genus() == 0]
     others = [scene for scene in square if scene.world.genus() > 0]
-    optimal = best(experience, watch)
+    optimal = best_scenes(experience, watch)
 
     def is_told(scene: Scene) -> bool:
         return not scene.world.indistinguishable(scene.at[-1], real.world, real.at[-1])
@@ -345,11 +346,11 @@ def _told(is_told: bool) -> str:
 
 def manhattan(tours: list[Experience], watch: Watch) -> Figure:
     """A piece of Manhattan: what is thought after 20 and 40 steps, and what is so."""
-    (whole,) = maps(tours[-1], watch, "closed", "planar", "perpendicular")
+    (whole,) = all_scenes(tours[-1], watch, "closed", "planar", "perpendicular")
     real = titled(whole, f"the real map, a tour of {tours[-1].steps} steps")
     panels: list[Scene] = []
     for tour, parts in zip(tours[:-1], ((), ("planar",)), strict=True):
-        found = best(tour, watch, *parts)
+        found = best_scenes(tour, watch, *parts)
         at = whole.at[: tour.steps + 1]
         truth = Scene(tours[-1].cut(tour.steps).map_of(tuple(at)), at, "")
         which = f"one of {len(found)} best{' planar ones' * bool(parts)} so far"

@@ -78,7 +78,7 @@ def tree(
     result.update(dict.fromkeys(KEYS), per_step=[])
     monotone = query.parts <= set(PRUNING)
     last = experience.steps if query.horizon is None else min(query.horizon, experience.steps)
-    parts: list[Cube] = [()]
+    branches: list[Cube] = [()]
     cubes: list[Cube] = []  # to come in its place, at a step
     depth = step = 0
     while step <= last:
@@ -87,21 +87,21 @@ def tree(
             cubes, depth = traversal.cubes(experience, query)
         if cubes and step >= depth:
             demand_cover(experience, query, watch, cubes, depth)
-            parts = cubes
+            branches = cubes
             break
-        if not level(counted([(replace(query, horizon=step), cube, True) for cube in parts])):
-            parts = [] if monotone else parts
+        if not level(counted([(replace(query, horizon=step), cube, True) for cube in branches])):
+            branches = [] if monotone else branches
         step += 1
     # All that is left is shared out at once: nobody waits for the end of a step.
     steps = range(step, last + 1)
-    units = [(replace(query, horizon=step), cube, True) for step in steps for cube in parts]
+    units = [(replace(query, horizon=step), cube, True) for step in steps for cube in branches]
     asked = {key: query.having(*properties) for key, properties in FINAL.items()}
-    cubes_of = {key: [()] if asked[key].optimizes else parts for key in asked}
+    cubes_of = {key: [()] if asked[key].optimizes else branches for key in asked}
     units += [(asked[key], cube, False) for key in asked for cube in cubes_of[key]]
     pairs = counted(units)
     for step in steps:
         watch.title(f"step {step} of {last}")
-        level(islice(pairs, len(parts)))
+        level(islice(pairs, len(branches)))
     result.update(
         nodes=sum(result["per_step"]), maps_built=maps_built, final=result["per_step"][-1]
     )
@@ -112,9 +112,9 @@ def tree(
 
 def final_maps(experience: Experience, query: Query, watch: Watch, crew: Crew) -> int:
     """The hypotheses after the last step, by clingo."""
-    parts, depth = traversal.cubes(experience, query)
-    demand_cover(experience, query, watch, parts, depth)
-    units = [(query, cube, False) for cube in parts]
+    branches, depth = traversal.cubes(experience, query)
+    demand_cover(experience, query, watch, branches, depth)
+    units = [(query, cube, False) for cube in branches]
     return sum(total for total, _ in crew.each(partial(_counted, experience), units, watch))
 
 
@@ -129,7 +129,7 @@ def _counted(experience: Experience, unit: Unit, watch: Watch | None) -> tuple[i
 @dataclass
 class Tally:
     """The same figures, of nodes that a search passes: add each, and merge the tallies of
-    parts of the tree. ``cost`` is that of the optimal maps so far."""
+    branches of the tree. ``cost`` is that of the optimal maps so far."""
 
     steps: int
     per_step: list[int] = field(default_factory=list)
@@ -198,17 +198,17 @@ class Tally:
 def searched(
     experience: Experience, query: Query, watch: Watch, journal: Journal, crew: Crew = ALONE
 ) -> Tally:
-    """The figures of the tree by depth-first search: of its top, and of the parts below it,
+    """The figures of the tree by depth-first search: of its top, and of the branches below it,
     each a unit of the journal."""
-    parts, _ = traversal.cubes(experience, query, 256)
+    branches, _ = traversal.cubes(experience, query, 256)
     node = traversal.root(experience, query)
     tally = Tally(node.experience.steps)
-    for _ in traversal.top(node, set(parts)):
+    for _ in traversal.top(node, set(branches)):
         tally.add(node)
-    known = [Tally(**value) for value in journal.known(len(parts))]
+    known = [Tally(**value) for value in journal.known(len(branches))]
     for done in known:
         tally.merge(done)
-    for done in crew.each(partial(_part, experience, query), parts[len(known) :], watch):
+    for done in crew.each(partial(_branch, experience, query), branches[len(known) :], watch):
         journal.keep(asdict(done))
         tally.merge(done)
         watch.found = tally.per_step[-1]
@@ -216,7 +216,7 @@ def searched(
     return tally
 
 
-def _part(experience: Experience, query: Query, cube: Cube, watch: Watch | None) -> Tally:
+def _branch(experience: Experience, query: Query, cube: Cube, watch: Watch | None) -> Tally:
     """The figures of the tree from a node down."""
     node = traversal.root(experience, query)
     node.goto(cube)
@@ -226,7 +226,7 @@ def _part(experience: Experience, query: Query, cube: Cube, watch: Watch | None)
     return tally
 
 
-def text(figures: Mapping[str, Any], fault: str | None) -> str:
+def figures_text(figures: Mapping[str, Any], fault: str | None) -> str:
     """The figures to read; of a search that was cut, ``at_least`` holds what the nodes met until
     then come to."""
     least = figures.get("at_least")

@@ -1,11 +1,12 @@
 """The maps among which the real one may be: those between which a further walk is to decide."""
 
+import difflib
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 
 from topomap.documents.beginnings import beginning
 from topomap.documents.maps import read_maps
-from topomap.drawing import scenes
 from topomap.model import words
 from topomap.model.experience import DState, Experience
 from topomap.model.found import steps_json
@@ -14,13 +15,14 @@ from topomap.questions.standings import Standing, standing
 from topomap.runtime.errors import InputError, printable
 from topomap.runtime.watch import Attempt, Watch
 from topomap.solver import solving
+from topomap.solver.enumeration import best_maps
 
 At = tuple[DState, ...]
-KINDS = {
+PARTS_OF = {
     "optimal": (),
     "closed": ("closed",),
     "perpendicular": ("closed", "perpendicular"),
-}  # the kinds of maps, and the parts that they have; of optimal ones see scenes.best
+}  # the kinds of maps, and the parts that they have; of optimal ones see best_maps
 GIVEN = "given"  # what a map is said to be that the caller has
 
 
@@ -80,41 +82,49 @@ def gather(
     watch: Watch,
 ) -> Candidates:
     """The maps of an experience, the beginning of a whole one, that are named by their kind (one
-    of KINDS) or by a file, or are given. Raises InputError where one is no map of it."""
+    of PARTS_OF) or by a file, or are given. Raises InputError where one is no map of it."""
     found: dict[At, str] = {}
     fault = None
     for number, one in enumerate(among, 1):
         if not isinstance(one, str):
             at = beginning(f"among: map {number}", steps_json(one), whole, experience)
             found.setdefault(at, GIVEN)
-        elif one not in KINDS:
+        elif one not in PARTS_OF:
             for at in _of_file(one, whole, experience, watch):
                 found.setdefault(at, one)
         elif fault is None:
             watch.title(f"{one} maps")
             if one == "optimal":
-                best, fault = scenes.best(whole, "", query, watch)
-                for scene in best:
-                    found.setdefault(tuple(scene.at), scene.kind)
+                best, fault = best_maps(whole, query, watch)
+                for one_map in best:
+                    found.setdefault(one_map.at, one_map.kind)
                 continue
             with Attempt() as attempt:
                 for at in _of_kind(one, whole, query, watch):
                     found.setdefault(at, one)
             fault = attempt.fault
-    every = not fault and all(one in KINDS for one in among)
+    every = not fault and all(one in PARTS_OF for one in among)
     each = tuple(Candidate(at, of) for at, of in sorted(found.items()))
     return Candidates(experience, each, every, fault)
 
 
 def _of_kind(kind: str, whole: Experience, query: Query, watch: Watch) -> Iterable[At]:
     """All maps of a kind."""
-    having = query.having(*KINDS[kind])
+    having = query.having(*PARTS_OF[kind])
     return (one.at for one in solving.hypotheses(whole, having, watch) if one is not None)
+
+
+def _misspelt(name: str) -> str | None:
+    """The kind of maps that was meant, if a name is nearly that of one, and of no file."""
+    near = difflib.get_close_matches(name[:20], PARTS_OF, 1, 0.8)
+    return near[0] if near and not Path(name).exists() else None
 
 
 def _of_file(path: str, whole: Experience, experience: Experience, watch: Watch) -> Iterator[At]:
     """The maps of a file, cut to the experience. Raises InputError if one is none of its
     hypotheses."""
+    if near := _misspelt(path):
+        raise InputError(f"{path}: no such file or directory; did you mean {near}?")
     documents = read_maps(path)
     if not any(document.maps for document in documents):
         raise InputError(f"{path}: no maps in it")

@@ -2,21 +2,21 @@
 and verified by a map that breaks each."""
 
 import random
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 import clingo
 
 from topomap.model.experience import DState
-from topomap.questions.reasons import FIRST, KINDS
+from topomap.questions.reasons import FIRST, RULE_NAMES
 from topomap.runtime.status import INTERRUPT
 from topomap.runtime.watch import Stopped
 from topomap.solver.programs import Program
+from topomap.solver.threads import Put
 
-ORDERS = 12  # in which reasons are tried, at most
+REASON_ORDERS = 12  # in which reasons are tried, at most
 CONFLICTS, CALLS = 3_000, 500  # of the solver, until no further order is tried
 TIDYING = 100  # reasons that are tried, so that a map breaks few others
-Put = Callable[[Any], bool]
 
 
 def dstates(symbols: Sequence[clingo.Symbol]) -> tuple[DState, ...]:
@@ -89,11 +89,11 @@ class Given:
 def find_reasons(assumed: Sequence[tuple[clingo.Symbol, bool]], program: Program, put: Put) -> None:
     """Puts reasons that suffice, fewer and fewer; at last some of which none can be spared."""
     given = Given(program, assumed)
-    whole = given.spare(list(given.literals), KINDS[FIRST:])
+    whole = given.spare(list(given.literals), RULE_NAMES[FIRST:])
     best: list[str] | None = None
-    for number in range(ORDERS):
+    for number in range(REASON_ORDERS):
         # The fewest kinds are not always the fewest reasons: later orders have all kinds.
-        kept = whole if number else given.spare(whole, KINDS[:FIRST])
+        kept = whole if number else given.spare(whole, RULE_NAMES[:FIRST])
         least = given.core(in_order(kept, number))
         if least is None:
             raise RuntimeError("the maps differ between two encodings")
@@ -147,7 +147,7 @@ def numbers_of(name: str) -> tuple[int, ...]:
 
 def rank(name: str) -> tuple[int, tuple[int, ...]]:
     """Reasons by kind, and then by their steps."""
-    return KINDS.index(kind_of(name)), numbers_of(name)
+    return RULE_NAMES.index(kind_of(name)), numbers_of(name)
 
 
 def in_order(names: Sequence[str], number: int) -> list[str]:

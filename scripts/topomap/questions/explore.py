@@ -6,7 +6,7 @@ for is found before that by a search of what the maps can predict together.
 """
 
 import re
-from collections.abc import Callable, Hashable, Iterable, Iterator, Sequence
+from collections.abc import Hashable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import combinations
 from typing import Any
@@ -21,7 +21,8 @@ from topomap.questions.standings import Prediction, Standing, facts, predict, sh
 from topomap.runtime.folders import ENCODINGS
 from topomap.runtime.limits import LONGEST_WALK
 from topomap.runtime.watch import Attempt, Watch
-from topomap.solver.programs import Program, in_thread
+from topomap.solver.programs import Program
+from topomap.solver.threads import Put, in_thread
 
 LIMITS = ("steps", "effort", "maps")  # why a plan may not be the best one, but for lack of time
 MOST_CLASSES = 60  # that are told apart at once
@@ -94,7 +95,7 @@ class _Call(Program):
         """Better and better answers, each with what it costs; the last one is a best one, if
         the search is ``whole`` and was not ended by the limit."""
 
-        def work(put: Callable[[Any], bool]) -> None:
+        def work(put: Put) -> None:
             def take(model: clingo.Model) -> bool:
                 return put((list(model.cost), list(map(str, model.symbols(shown=True)))))
 

@@ -1,7 +1,7 @@
 """Proofs that no walk tells maps apart: to be kept in a file, and checked without a solver."""
 
 import json
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -11,6 +11,7 @@ from topomap.documents.bisimulation import Chart, Pair
 from topomap.model import words
 from topomap.model.experience import DState, Experience
 from topomap.model.found import steps_json
+from topomap.model.reply import Reply
 from topomap.questions.plans import Planned
 from topomap.runtime import files, formats
 from topomap.runtime.errors import InputError
@@ -34,8 +35,8 @@ def proofs(planned: Planned) -> dict[str, Any]:
     }
 
 
-@dataclass(frozen=True)
-class Checked:
+@dataclass(frozen=True, repr=False)
+class Checked(Reply):
     """What came of checking ``proofs`` of them: a line for each that is ``wrong``. They are about
     the first ``steps`` of ``whole`` steps."""
 
@@ -43,16 +44,16 @@ class Checked:
     wrong: tuple[str, ...]
     steps: int
     whole: int
+    fault: None = None  # to check takes no time to speak of, so it is never cut
 
-    def lines(self) -> list[str]:
-        """The answer to read."""
+    def lines(self) -> Iterator[str]:
         first = f", of the first {self.steps} of {self.whole} steps"
         of = first * (self.steps < self.whole)
         told = f"{words.number(self.proofs, 'proof')}, {len(self.wrong) or 'none'} wrong{of}"
-        return [*self.wrong, told]
+        yield from self.wrong
+        yield told
 
     def document(self) -> dict[str, Any]:
-        """The answer as JSON."""
         return {"proofs": self.proofs, "wrong": list(self.wrong)}
 
 
@@ -60,7 +61,7 @@ def check_proofs(path: str, experience: Experience) -> Checked:
     """Check the proofs in a file, which are about an experience or its first steps. Raises
     InputError, one line, if there are none in it."""
     try:
-        data = json.loads(files.text(path, maps.MOST_BYTES))
+        data = json.loads(files.read_text(path, maps.MOST_BYTES_OF_MAPS))
         formats.demand(path, data)
         marker, proofs, steps = data["marker"], data["proofs"], data["horizon"]
         kinds = isinstance(marker, bool), isinstance(proofs, list), type(steps) is int

@@ -32,8 +32,8 @@ RULES = {
     "travelled": "travelled",
     "closed": "closed",
 }
-KINDS = tuple(RULES)  # those named first are what an explanation prefers to be made of
-FIRST = KINDS.index("bound")  # so many are of every map, and not of demands
+RULE_NAMES = tuple(RULES)  # those named first are what an explanation prefers to be made of
+FIRST = RULE_NAMES.index("bound")  # so many are of every map, and not of demands
 Node = tuple[int, int]  # a run, and a visit on it
 
 

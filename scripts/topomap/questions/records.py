@@ -14,7 +14,8 @@ import clingo
 from topomap.documents.maps import is_number
 from topomap.model import words
 from topomap.model.experience import MARKER, marker_fault, marker_out
-from topomap.model.facts import SIGNATURES, cut_short, ground_facts, misfit, slots_fault
+from topomap.model.facts import SIGNATURES, ground_facts, misfit, slots_fault
+from topomap.model.terms import cut_short
 from topomap.runtime.errors import InputError
 
 KNOWN = {**SIGNATURES, "undo": "undo(N)"}  # of which undo is a line by itself

@@ -5,8 +5,9 @@ for them, and stops when the best map is closed and the only one, or when no wal
 best ones apart.
 """
 
+import contextlib
 import statistics
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import islice
 from typing import Any
@@ -25,6 +26,7 @@ from topomap.runtime.watch import Attempt, Watch
 from topomap.solver import solving
 from topomap.worlds import route
 from topomap.worlds.environment import Environment
+from topomap.worlds.tours import tour as tour_of
 
 MOST_MAPS = 100  # best maps of which a walk is planned, while none is closed
 WALKS = 101  # random walks, of which the median is told
@@ -36,6 +38,7 @@ ENDS = {
     "steps": "as many steps as it may walk; partial: steps",
 }
 HEAD = "environment", "places", "ways", "signs", "steps", "tour", "random", "maps", "truth"
+OFTEN = 1000  # steps of a random walk between two looks at the watch
 PATIENCE = 1000  # times as many steps as there are ways, after which a random walk is given up
 
 
@@ -46,10 +49,8 @@ class Outcome:
 
     ``maps`` are the best maps of the end; ``truth`` says whether the hypothesis that is so is
     among them, and its map the whole world; None where that is open: the robot could go no
-    further, or there may be more best maps than were kept. ``tour`` is the length of a tour over
-    every way, by one who knows the map; ``random`` the median number of steps in which random
-    walks take every way (None: most do not within PATIENCE steps a way). ``whole`` tells whether
-    the best maps are all that there are.
+    further, or there may be more best maps than were kept. ``whole`` tells whether the best maps
+    are all that there are.
     """
 
     world: TopologicalMap
@@ -58,8 +59,7 @@ class Outcome:
     maps: tuple[Found, ...]
     end: str
     truth: bool | None
-    tour: int
-    random: int | None
+    others: "Others"
     whole: bool
 
     @property
@@ -67,16 +67,27 @@ class Outcome:
         return self.experience.steps
 
     @property
+    def tour(self) -> int | None:
+        """How long a tour over every way is, by one who knows the map; None if it was not found."""
+        return self.others.tour
+
+    @property
+    def random(self) -> int | None:
+        """The median number of steps in which random walks take every way; None if most do not
+        within PATIENCE steps a way, or were not walked to the end."""
+        return self.others.random
+
+    @property
     def fault(self) -> str | None:
-        """Why the robot did not come to an end, if so."""
-        return None if self.end in ENDED else self.end
+        """Why the robot, or what it is compared with, did not come to an end, if so."""
+        return self.others.fault or (None if self.end in ENDED else self.end)
 
     @property
     def found(self) -> bool:
         """Whether it came to one closed map, which is the truth."""
         return self.end == "settled" and bool(self.truth)
 
-    def json(self) -> dict[str, Any]:
+    def document(self) -> dict[str, Any]:
         """What is told of it."""
         return {
             "places": len(self.world.stars),
@@ -101,7 +112,7 @@ class Outcome:
         ]
         if not world.boundaries_consistent():
             lines.append("the truth has inconsistent boundaries, and so is never optimal")
-        so_far = " so far" * bool(self.fault)
+        so_far = " so far" * (self.end not in ENDED)
         if self.maps and self.truth is None:
             many = number(len(self.maps), "best map")
             or_more = " or more" * (len(self.maps) == MOST_MAPS)
@@ -111,10 +122,7 @@ class Outcome:
         elif self.maps:
             is_there = "" if self.truth else "not "
             lines.append(f"{len(self.maps)} best maps{so_far}, the truth is {is_there}among them")
-        tour = number(self.tour, "step")
-        lines.append(f"a tour over every way, by one who knows the map: {tour}")
-        walked = "not within reach" if self.random is None else number(self.random, "step")
-        lines.append(f"a random walk over every way (median): {walked}")
+        lines += self.others.lines()
         return "".join(line + "\n" for line in lines)
 
     def _end(self) -> str:
@@ -122,6 +130,24 @@ class Outcome:
         if self.end == "bisimilar" and len(self.maps) == MOST_MAPS:
             return f"no walk can tell {MOST_MAPS} of the optimal maps apart"
         return ENDS.get(self.end, f"partial: {self.end}")
+
+
+@dataclass(frozen=True)
+class Others:
+    """What a robot is compared with: a tour by one who knows the map, and random walks, in steps.
+    What is missing is None: out of reach, or cut, if ``fault`` says why."""
+
+    tour: int | None
+    random: int | None
+    fault: str | None = None
+
+    def lines(self) -> Iterator[str]:
+        """The same to read."""
+        missing = f"not known; partial: {self.fault}" if self.fault else "not within reach"
+        tour = missing if self.tour is None else number(self.tour, "step")
+        yield f"a tour over every way, by one who knows the map: {tour}"
+        walked = missing if self.random is None else number(self.random, "step")
+        yield f"a random walk over every way (median): {walked}"
 
 
 def table(rows: Sequence[dict[str, Any]]) -> str:
@@ -132,6 +158,7 @@ def table(rows: Sequence[dict[str, Any]]) -> str:
         truth = {True: "yes", False: "no", None: "open"}[row["truth"]]
         truth = f"one of {maps}" if row["truth"] and maps > 1 else truth
         cells = {**row, "maps": maps, "truth": truth, "random": row["random"] or "-"}
+        cells["tour"] = "-" if row["tour"] is None else row["tour"]
         lines.append(tuple(str(cells[key]) for key in HEAD))
     widths = [max(map(len, column)) for column in zip(*lines, strict=True)]
     text = "".join(
@@ -180,23 +207,41 @@ def reached(world: TopologicalMap, start: Place) -> TopologicalMap:
     return part
 
 
-def random_walk(world: TopologicalMap, start: Place, walks: int = WALKS) -> int | None:
+def others(world: TopologicalMap, start: Place, watch: Watch) -> Others:
+    """What a robot in a world is compared with. The watch may end the work."""
+    tour = random = None
+    with Attempt() as attempt:
+        watch.phase("a tour")
+        with contextlib.suppress(InputError):  # too large a world
+            tour = len(tour_of(world, start, watch))
+        watch.phase("random walks")
+        random = random_walk(world, start, watch=watch)
+    return Others(tour, random, attempt.fault)
+
+
+def random_walk(
+    world: TopologicalMap, start: Place, walks: int = WALKS, watch: Watch | None = None
+) -> int | None:
     """How many steps a random walk takes until it has gone every way: the median."""
-    ways = len(world.links) // 2
-    lengths: list[float] = []
-    for seed in range(walks):
-        taken: set[Gateway] = set()
-        place = start
-        for steps, slot in enumerate(islice(route.walk(world, start, seed), PATIENCE * ways), 1):
-            taken |= {(place, slot), world.links[place, slot]}
-            place = world.links[place, slot][0]
-            if len(taken) == 2 * ways:
-                lengths.append(steps)
-                break
-        else:
-            lengths.append(float("inf"))
+    lengths = [_length(world, start, seed, watch or Watch()) for seed in range(walks)]
     median = statistics.median_low(lengths)
     return None if median == float("inf") else int(median)
+
+
+def _length(world: TopologicalMap, start: Place, seed: int, watch: Watch) -> float:
+    """After how many steps a random walk has gone every way; infinite, if it has no patience."""
+    ways = len(world.links) // 2
+    taken: set[Gateway] = set()
+    place = start
+    for steps, slot in enumerate(islice(route.walk(world, start, seed), PATIENCE * ways), 1):
+        if steps % OFTEN == 1:
+            watch.tick()
+        there = world.links[place, slot]
+        taken |= {(place, slot), there}
+        if len(taken) == 2 * ways:
+            return steps
+        place = there[0]
+    return float("inf")
 
 
 class Robot:
@@ -252,11 +297,10 @@ def simulate(
     if attempt.fault:
         end = attempt.fault
         maps = [one for one in maps if len(one.at) == len(robot.route) + 1]
-    tour = len(route.tour(world, start[0]))
-    walked = random_walk(world, start[0])
     whole = end in ENDED and len(maps) < MOST_MAPS
     truth = robot.mapped(maps) or (False if whole else None)
-    return Outcome(world, start, robot.experience(), tuple(maps), end, truth, tour, walked, whole)
+    told = others(world, start[0], watch)
+    return Outcome(world, start, robot.experience(), tuple(maps), end, truth, told, whole)
 
 
 def _go_on(robot: Robot, maps: Sequence[Found], watch: Watch, most: int, marker: bool) -> str:

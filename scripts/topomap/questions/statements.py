@@ -39,7 +39,7 @@ class Statement:
         return f"ask({self.term})."
 
 
-def parse(text: str, experience: "Experience", command: str) -> Statement:
+def parse_statement(text: str, experience: "Experience", command: str) -> Statement:
     """The statement in a text, about an experience of which all steps count. Raises
     InputError, one line that begins with the command."""
     try:

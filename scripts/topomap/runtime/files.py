@@ -19,12 +19,12 @@ _TEMPORARY = ".topomap-"
 TEXT = {"encoding": "utf-8", "errors": "backslashreplace"}
 
 
-def data(path: str | Path) -> bytes:
+def read_bytes(path: str | Path) -> bytes:
     """The bytes of a file. Raises InputError where it cannot be read."""
     return bytes(_content(path, MOST_BYTES))
 
 
-def text(path: str | Path, most: int = MOST_BYTES) -> str:
+def read_text(path: str | Path, most: int = MOST_BYTES) -> str:
     """The text of a file of ``most`` bytes at most. Raises InputError where there is none."""
     try:
         return _content(path, most, b"\0").decode("utf-8-sig")

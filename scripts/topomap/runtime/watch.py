@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterator
 from typing import Generic, ParamSpec, Self, TypeVar
 
 from topomap.runtime.progress import Progress
-from topomap.runtime.status import INTERRUPT, exit_status
+from topomap.runtime.status import INTERRUPT
 
 MEMORY = "out of memory"
 P = ParamSpec("P")
@@ -123,7 +123,8 @@ class Watch:
     """What a search looks at between two answers: its deadline, and the signals and the
     progress line of the command that began it, if one did. ``found`` counts the maps.
 
-    Without these it touches nothing of the process, and so goes with any thread.
+    Without these it touches nothing of the process, and so goes with any thread. Another thread
+    ends the search by saying in ``ended`` why.
     """
 
     def __init__(
@@ -133,16 +134,20 @@ class Watch:
         signals: Signals | None = None,
     ):
         self.found = 0
+        self.ended: str | None = None
         self.deadline = Deadline(timeout)
         self._progress = progress or Progress(quiet=True)
         self._signals = signals
         self.title, self.phase = self._progress.title, self._progress.phase
 
     def tick(self) -> None:
-        """Show progress; raises Stopped past the time limit and after a signal."""
+        """Show progress; raises Stopped past the time limit, after a signal, and when another
+        thread has ended the search."""
         self._progress.show(self.found)
         if self._signals and self._signals.came:
             raise Stopped(INTERRUPT)
+        if self.ended is not None:
+            raise Stopped(self.ended)
         if self.deadline.passed:
             raise Stopped("timeout")
 
@@ -157,22 +162,3 @@ def heeding(timeout: float | None = None, quiet: bool = False) -> Iterator[Watch
             yield Watch(timeout, progress, signals)
         finally:
             progress.close()
-
-
-class Run(Attempt):
-    """The work of a command: an attempt with a ``watch`` as above."""
-
-    def __init__(self, timeout: float | None = None, quiet: bool = False):
-        self._heeding = heeding(timeout, quiet)
-
-    def __enter__(self) -> Self:
-        self.watch = self._heeding.__enter__()
-        return self
-
-    def __exit__(self, kind: object, error: BaseException | None, trace: object) -> bool:
-        self._heeding.__exit__(None, None, None)
-        return super().__exit__(kind, error, trace)
-
-    def status(self, yes: bool) -> int:
-        """The exit status of the command: partial, or else yes or no."""
-        return exit_status(self.fault, yes)

@@ -36,7 +36,7 @@ class Branches:
     def difference(self) -> Fraction | None:
         return None if self.predicted is None else self.measured - self.predicted
 
-    def json(self) -> dict[str, Any]:
+    def document(self) -> dict[str, Any]:
         numbers = {"measured": self.measured, "predicted": self.predicted}
         return {
             **{key: getattr(self, key) for key in ("b", "bp", "pi", "p")},
@@ -72,15 +72,15 @@ class BranchingNode:
         """The ratio under the views that are seen, less that of equation (1) as it stands."""
         return self.seen.measured - (self.worst.predicted or 0)
 
-    def json(self) -> dict[str, Any]:
+    def document(self) -> dict[str, Any]:
         return {
             "step": self.step,
             "at": steps_json(self.at),
             "m": self.matches,
             "f": self.faces,
             "start_fits": self.start_fits,
-            "worst": self.worst.json(),
-            "seen": self.seen.json(),
+            "worst": self.worst.document(),
+            "seen": self.seen.document(),
             "seen_minus_equation": float(self.gap),
         }
 
@@ -142,7 +142,7 @@ class Summary:
             steps.append({"step": node.step, **dict.fromkeys(FIGURES, 0)})
         for key, figure in FIGURES.items():
             for totals in self.totals, steps[-1]:
-                totals[key] = (max if key in LARGEST else sum)((totals[key], figure(node)))
+                totals[key] = (max if key in MAXIMA else sum)((totals[key], figure(node)))
 
     @property
     def holds(self) -> bool:
@@ -168,10 +168,10 @@ FIGURES: dict[str, Callable[[BranchingNode], float]] = {
     "largest_difference": lambda n: round(float(abs(n.seen.difference or 0)), 6),
     "largest_gap": lambda n: round(float(abs(n.gap)), 6),
 }
-LARGEST = "largest_difference", "largest_gap"
+MAXIMA = "largest_difference", "largest_gap"
 
 
-def text(totals: dict[str, Any]) -> str:
+def totals_text(totals: dict[str, Any]) -> str:
     """The totals of a summary, to read: by step, and of all."""
     head = "step", "nodes", "m", "worst b", "bp", "bp/b", "seen b", "bp", "bp/b", "start fits"
     lines = [" ".join(word.rjust(9) for word in head)]

@@ -91,12 +91,12 @@ def _children(node: Hypothesis) -> list[int]:
 
 
 def cubes(experience: Experience, query: Query, least: int = 64) -> tuple[list[Cube], int]:
-    """Nodes that part the hypotheses, at least so many of them if there are as many, so that
+    """Nodes that share out the hypotheses, at least so many of them if there are as many, so that
     a long run can be shared out, cut and resumed.
 
     They are of like size, as far as it can be told from the first level of the tree that has
-    32 times as many nodes (or else the last one): the parts of the tree with more of
-    these are parted again. The second figure is the step of that level: the hypotheses after
+    32 times as many nodes (or else the last one): the branches of the tree with more of
+    these are shared out again. The second figure is the step of that level: the hypotheses after
     that step, and after each later one, begin with one of the nodes each."""
     level: list[Cube] = []
     for node in breadth_first(root(experience, query)):
@@ -105,20 +105,20 @@ def cubes(experience: Experience, query: Query, least: int = 64) -> tuple[list[C
                 break
             level = []
         level.append(node.dstates)
-    parts: list[Cube] = []
-    open_parts = [(1, level)]
-    while open_parts:
-        size, under = open_parts.pop()
+    branches: list[Cube] = []
+    open_branches = [(1, level)]
+    while open_branches:
+        size, under = open_branches.pop()
         if len(under) * least <= len(level) or size == len(under[0]):
-            parts.append(under[0][:size])
+            branches.append(under[0][:size])
         else:
             groups = groupby(under, key=itemgetter(size))
-            open_parts += [(size + 1, list(group)) for _, group in groups][::-1]
-    return parts, len(level[0]) - 1
+            open_branches += [(size + 1, list(group)) for _, group in groups][::-1]
+    return branches, len(level[0]) - 1
 
 
 def top(node: Hypothesis, cubes: Collection[Cube]) -> Iterator[Hypothesis]:
-    """The nodes from this one down that are of none of the cubes' parts of the tree."""
+    """The nodes from this one down that are in none of the branches that begin with the cubes."""
     border = [node.dstates]
     while border:
         at = border.pop()

@@ -1,16 +1,17 @@
-"""Every map of a query, by either way: at once, or part by part of the tree, each part a unit
+"""Every map of a query, by either way: at once, or branch by branch of the tree, each branch a unit
 of a journal, alone or shared out."""
 
 from array import array
 from collections.abc import Iterator
+from dataclasses import replace
 from functools import partial
 
 from topomap.model.experience import Experience
-from topomap.model.found import Cube, Found
+from topomap.model.found import UNPROVED, Cube, Found
 from topomap.model.query import Query
 from topomap.runtime.journal import Journal
 from topomap.runtime.limits import LARGEST
-from topomap.runtime.watch import Watch
+from topomap.runtime.watch import Attempt, Stopped, Watch
 from topomap.search import traversal
 from topomap.solver import solving
 from topomap.solver.share import ALONE, Crew
@@ -30,7 +31,7 @@ def every(
 ) -> Iterator[Found]:
     """The maps of a query, or the best of them if ``optimal`` (better and better ones come
     before those that are proved); ``by`` is one of WAYS. If there is a journal or a crew, and
-    nothing is minimised, part by part of the tree. Raises Stopped."""
+    nothing is minimised, branch by branch of the tree. Raises Stopped."""
     journal = journal or Journal()
     way = WAYS[by]
     if optimal:
@@ -38,11 +39,11 @@ def every(
     elif query.optimizes or (crew is ALONE and not journal.kept):
         yield from filter(None, way(experience, query, watch))
     else:
-        parts, depth = traversal.cubes(experience, query)
+        branches, depth = traversal.cubes(experience, query)
         done = 0
-        known: set[Cube] = set()  # the maps of the part that was cut
+        known: set[Cube] = set()  # the maps of the branch that was cut
         with watch.deadline.waiting():
-            for value in journal.recorded(len(parts)):
+            for value in journal.recorded(len(branches)):
                 watch.tick()
                 if value is None:
                     known.clear()
@@ -53,11 +54,11 @@ def every(
                     watch.found += 1
                     yield Found(at, query.kind)
         if by == "clingo":
-            solving.demand_cover(experience, query, watch, parts, depth)
+            solving.demand_cover(experience, query, watch, branches, depth)
         if crew is ALONE:
-            left = way(experience, query, watch, cubes=parts[done:])
+            left = way(experience, query, watch, cubes=branches[done:])
         else:
-            left = _shared(crew, way, experience, query, watch, parts[done:])
+            left = _shared(crew, way, experience, query, watch, branches[done:])
         for found in left:
             if found is None:
                 known.clear()
@@ -65,6 +66,33 @@ def every(
             elif found.at not in known:
                 journal.add(found.at)
                 yield found
+
+
+def proved_or_last(coming: Iterator[Found]) -> Iterator[Found]:
+    """Of maps that come, those that are proved to be what they are said to be; or the last of the
+    others, which is the best until then, if the work is cut before one is proved. Raises Stopped
+    after that."""
+    last, some = None, False
+    with Attempt() as attempt:
+        for found in coming:
+            if found.proved:
+                some = True
+                yield found
+            else:
+                last = found
+    if attempt.fault:
+        if last and not some:
+            yield replace(last, kind=UNPROVED)
+        raise Stopped(attempt.fault)
+
+
+def best_maps(experience: Experience, query: Query, watch: Watch) -> tuple[list[Found], str | None]:
+    """The optimal maps, or the best so far, in order; and why they may not be all, if so."""
+    found = []
+    with Attempt() as attempt:
+        for one in proved_or_last(every(experience, query, watch, optimal=True)):
+            found.append(one)
+    return sorted(found, key=lambda one: one.at), attempt.fault
 
 
 def _shared(

@@ -1,18 +1,35 @@
-"""Processes of this machine that share work."""
+"""Processes of this machine that share work.
+
+A worker is a Python of its own, which is told by a pipe where it finds modules, and then what to
+do. multiprocessing would have it run the script of the user once more, and would start a process
+of its own besides, which lets Ctrl-C through.
+"""
 
 import contextlib
+import os
 import signal
+import subprocess
+import sys
+import threading
 from collections import Counter, deque
 from collections.abc import Iterator, Sequence
-from multiprocessing import get_context
+from multiprocessing import Pipe
 from multiprocessing.connection import Connection, wait
-from multiprocessing.process import BaseProcess
+from multiprocessing.spawn import get_executable
 from typing import Any
 
 from topomap.runtime.watch import MEMORY, Stopped, Watch
 from topomap.solver.share import AHEAD, LOST, Result, Unit, Work
 
 TRIES = 3  # workers that a unit may cost
+WORKER = """\
+import sys
+from multiprocessing.connection import Connection
+pipe = Connection(int(sys.argv[1]))
+sys.path[:] = pipe.recv()
+from topomap.solver.processes import serve
+serve(pipe)
+"""
 
 
 class Processes:
@@ -20,7 +37,7 @@ class Processes:
 
     def __init__(self, jobs: int):
         self._jobs = jobs
-        self._workers: dict[Connection, BaseProcess] = {}
+        self._workers: dict[Connection, subprocess.Popen[bytes]] = {}
 
     def each(
         self, work: Work[Unit, Result], units: Sequence[Unit], watch: Watch
@@ -61,24 +78,26 @@ class Processes:
                 self._fire(pipe)
 
     def _hire(self) -> None:
-        context = get_context("spawn")
-        ours, theirs = context.Pipe()
-        process = context.Process(target=_serve, args=(theirs,), daemon=True)
+        ours, theirs = Pipe()
+        # -P: what lies in this folder is no module, unless it is one for this process, too.
+        call = [get_executable(), "-P", "-c", WORKER, str(theirs.fileno())]
         # Ctrl-C in the terminal is for this process alone, from the worker's first moment.
         before = signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGINT])
         try:
-            process.start()
+            process = subprocess.Popen(call, stdin=subprocess.PIPE, pass_fds=[theirs.fileno()])
         except OSError:
             raise Stopped(MEMORY) from None
         finally:
             signal.pthread_sigmask(signal.SIG_SETMASK, before)
-        theirs.close()  # so that the pipe is at its end when the worker is
+            theirs.close()  # so that the pipe is at its end when the worker is
         self._workers[ours] = process
+        with contextlib.suppress(OSError):  # it is lost, as is seen when it is to work
+            ours.send([folder for folder in sys.path if isinstance(folder, str)])
 
     def _fire(self, pipe: Connection) -> None:
         if process := self._workers.pop(pipe, None):
             process.kill()
-            process.join()
+            process.communicate()
             pipe.close()
 
     def __enter__(self) -> "Processes":
@@ -89,9 +108,10 @@ class Processes:
             self._fire(pipe)
 
 
-def _serve(pipe: Connection) -> None:
+def serve(pipe: Connection) -> None:
     """In a worker: do what comes, until there is nobody to do it for."""
     signal.signal(signal.SIGTERM, signal.SIG_DFL)
+    threading.Thread(target=_end_with_the_other, daemon=True).start()
     with contextlib.suppress(EOFError, OSError):
         while True:
             work, unit = pipe.recv()
@@ -102,3 +122,10 @@ def _serve(pipe: Connection) -> None:
             except Exception as error:
                 answer = False, error
             pipe.send(answer)
+
+
+def _end_with_the_other() -> None:
+    """End this worker, whatever it does, when the process is gone that holds the other end of its
+    standard input: nothing is ever written there."""
+    os.read(0, 1)
+    os._exit(0)

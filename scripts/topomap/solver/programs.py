@@ -1,19 +1,9 @@
-"""clingo's programs: made of the encodings, grounded and solved in a thread of their own.
+"""clingo's programs: made of the encodings, grounded and solved in a thread of their own."""
 
-So a time limit and Ctrl-C end them at any moment, while they ground too, and what was found until
-then is kept.
-"""
-
-import _thread
-import contextlib
-import os
-import queue
 import threading
-import time
-import weakref
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from functools import partial
-from typing import Any, ClassVar, TypeVar
+from typing import Any, TypeVar
 
 import clingo
 
@@ -25,10 +15,10 @@ from topomap.runtime.folders import ENCODINGS
 from topomap.runtime.status import INTERRUPT
 from topomap.runtime.watch import MEMORY, Stopped, Watch
 from topomap.solver import phases
+from topomap.solver.threads import Put, in_thread, prepare
 
 FORMS = {"work": ENCODINGS, "paper": ENCODINGS / "paper"}
 Answer = TypeVar("Answer")
-AHEAD = 1000  # answers that wait to be taken, at most
 
 
 def control(
@@ -89,6 +79,7 @@ class Program:
                 if "rare(" in facts:
                     self.control.configuration.solver.heuristic = "Domain"  # type: ignore[union-attr]
             self.control.ground()
+            self._heed(self.control)
             self._grounded = True
         return self.control.solve([*_assumed(cube), *more], on_model=on_model)
 
@@ -132,7 +123,7 @@ def forget() -> None:
 
 def program_of(experience: Experience, query: Query, facts: str = "") -> Program:
     """The program of a query: the one that was kept, or a new one."""
-    _prepare()
+    prepare()
     program, _last.program = _last.program, None
     if program is None or (*program.asked, program.facts) != (experience, query, facts):
         program = None  # its memory is free before there is another
@@ -143,117 +134,12 @@ def program_of(experience: Experience, query: Query, facts: str = "") -> Program
     return program
 
 
-class _Worker:
-    """A thread that does one job after another. It is started while there is memory, and has
-    what it needs when there is none left: a threading.Thread that cannot begin is waited for
-    without end, and C++ aborts where it cannot report an error."""
-
-    idle: ClassVar[list["_Worker"]] = []
-
-    def __init__(self) -> None:
-        self._jobs: queue.SimpleQueue[tuple[Callable[[], None], threading.Event]]
-        self._jobs = queue.SimpleQueue()
-        life = _Life()
-        self._alive = weakref.ref(life)
-        _thread.start_new_thread(self._run, (life,))
-
-    @classmethod
-    def hire(cls) -> "_Worker":
-        """An idle one, or a new one. Raises Stopped if there is no room for it."""
-        try:
-            return cls.idle.pop()
-        except IndexError:
-            pass
-        try:
-            return cls()
-        except RuntimeError:
-            raise Stopped(MEMORY) from None
-
-    def do(self, job: Callable[[], None]) -> threading.Event:
-        """Begin with a job; the event is set when it is done."""
-        over = threading.Event()
-        self._jobs.put((job, over))
-        return over
-
-    def is_alive(self) -> bool:
-        return self._alive() is not None
-
-    def _run(self, _: object) -> None:
-        _prepare()
-        while True:
-            job, over = self._jobs.get()
-            job()
-            del job  # and what it holds
-            self.idle.append(self)
-            over.set()
-
-
-class _Life:
-    """What only a thread holds: when it is gone, so is the thread."""
-
-
-os.register_at_fork(after_in_child=_Worker.idle.clear)  # it has no threads but its own
-
-
-def in_thread(
-    program: Program, watch: Watch, work: Callable[[Callable[[Any], bool]], None]
-) -> Iterator[Any]:
-    """What ``work`` puts, in a thread of its own; what it puts last is False if it is to
-    end. Raises Stopped at the time limit, or out of memory."""
-    found: queue.SimpleQueue[Any] = queue.SimpleQueue()
-    stop = threading.Event()
-
-    def put(item: Any) -> bool:
-        while found.qsize() >= AHEAD and not stop.is_set():
-            time.sleep(0.01)
-        if not stop.is_set():
-            found.put(item)
-        return not stop.is_set()
-
-    def run() -> None:
-        try:
-            work(put)
-            put(StopIteration())
-        except Exception as error:  # raised again in the caller's thread
-            put(error)
-
-    program.say = watch.phase
-    worker = _Worker.hire()
-    over = worker.do(run)
-    ended = False
-    try:
-        while True:
-            try:
-                item = found.get(timeout=0.1)
-            except queue.Empty:
-                watch.tick()
-                if not worker.is_alive() and found.empty():  # it could not even say why
-                    raise Stopped(MEMORY) from None
-                continue
-            if isinstance(item, StopIteration):
-                ended = True
-                return
-            if isinstance(item, MemoryError):
-                raise Stopped(MEMORY)
-            if isinstance(item, Exception):
-                raise item
-            watch.tick()
-            yield item
-    finally:
-        stop.set()
-        if ended:
-            program.keep()
-        else:
-            program.interrupt()
-        over.wait(timeout=0.5)
-
-
 def calls(
     experience: Experience,
     query: Query,
     facts: str,
     watch: Watch,
-    work: Callable[[Program, Callable[[Any], bool]], None],
+    work: Callable[[Program, Put], None],
 ) -> Iterator[Any]:
     """What ``work`` puts, which solves a query's program with these facts as often as it likes.
     Raises Stopped at the time limit, or out of memory."""
@@ -273,7 +159,7 @@ def answers(
     a None, and so on. Raises Stopped at the time limit, or out of memory."""
     program = program_of(experience, query)
 
-    def work(put: Callable[[Any], bool]) -> None:
+    def work(put: Put) -> None:
         going = True
 
         def take(model: clingo.Model) -> bool:
@@ -299,10 +185,3 @@ def _assumed(cube: Cube) -> list[tuple[clingo.Symbol, bool]]:
         (clingo.Function("at", [clingo.Number(number) for number in (step, *dstate)]), True)
         for step, dstate in enumerate(cube)
     ]
-
-
-def _prepare() -> None:
-    """Have C++ allocate what it needs to report an error in this thread: when it is out of
-    memory it cannot, and aborts."""
-    with contextlib.suppress(RuntimeError):
-        clingo.parse_term("", logger=lambda *_: None)

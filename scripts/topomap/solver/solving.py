@@ -16,7 +16,8 @@ from topomap.model.vocabulary import PRUNING
 from topomap.runtime.folders import ENCODINGS
 from topomap.runtime.version import VERSION
 from topomap.runtime.watch import MEMORY, Stopped, Watch
-from topomap.solver.programs import answers, in_thread, program_of
+from topomap.solver.programs import answers, program_of
+from topomap.solver.threads import Put, in_thread
 
 
 def demand_cover(
@@ -107,8 +108,7 @@ def best(
     """
     least: tuple[int, ...] = ()
     if query.noise is not None:
-        maps = way(experience, query.having("boundary"), watch)
-        cheapest = next((found for found in maps if found and found.proved), None)
+        cheapest = _first_proved(way(experience, query.having("boundary"), watch))
         if cheapest is None:
             return
         least = cheapest.cost[:2]
@@ -123,6 +123,11 @@ def best(
         yield from optimal
     else:
         yield from way(experience, query.having("boundary", "minimal"), watch, "best so far")
+
+
+def _first_proved(maps: Iterator[Found | None]) -> Found | None:
+    """The first map that is proved to be best, if there is one. With the call ends the search."""
+    return next((found for found in maps if found and found.proved), None)
 
 
 def count(
@@ -142,7 +147,7 @@ def count(
     fresh = clingo.Function("fresh", [clingo.Number(last)])
     counts: list[tuple[int, tuple[float, ...]]] = []
 
-    def work(put: Callable[[Any], bool]) -> None:
+    def work(put: Put) -> None:
         for more in [[(fresh, True)], [(fresh, False)]] if grown and last else [[]]:
             program.solve(cube, more)
             counts.append(program.models())

@@ -14,7 +14,9 @@ import clingo
 
 from topomap.model.topology import Gateway, Place, TopologicalMap, label
 from topomap.runtime import nx
+from topomap.runtime.checks import share, whole
 from topomap.runtime.errors import InputError
+from topomap.runtime.limits import MOST_PLACES
 
 NORTH, EAST, SOUTH, WEST = range(4)
 MOVES = {NORTH: (-1, 0), EAST: (0, 1), SOUTH: (1, 0), WEST: (0, -1)}
@@ -43,7 +45,9 @@ class Environment:
 
     def signed(self, rate: float, seed: int) -> "Environment":
         """The same world with ``round(rate * n)`` of its n places carrying a sign,
-        a landmark that is the place's own name; drawn from the sorted places."""
+        a landmark that is the place's own name; drawn from the sorted places. Raises ValueError
+        if the rate is not from 0 to 1."""
+        rate = share("signs", rate)
         places = sorted(self.map.stars)
         drawn = random.Random(seed).sample(places, round(rate * len(places)))
         landmarks = {place: frozenset((_term(place),)) for place in drawn}
@@ -171,8 +175,12 @@ def environment(
     kind: str, rows: int, columns: int, thin: float = 0.3, seed: int = 0
 ) -> Environment:
     """The world of a kind: ``grid``, ``cylinder``, ``torus``, ``maze`` (a share ``thin`` of its
-    ways is taken away with the seed), ``hexagons`` or ``triangles``. Raises ValueError on others.
-    """
+    ways is taken away with the seed), ``hexagons`` or ``triangles``. Raises ValueError on others
+    and on numbers that cannot be, and InputError if it is too large."""
+    rows, columns = whole("rows", rows, 1), whole("columns", columns, 1)
+    thin, seed = share("thin", thin), whole("seed", seed, 0)
+    if rows * columns > MOST_PLACES:
+        raise InputError(f"{kind} {rows} x {columns}: more than {MOST_PLACES} places")
     if kind == "maze":
         return maze(rows, columns, thin, seed)
     if kind in ("hexagons", "triangles"):

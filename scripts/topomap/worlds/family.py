@@ -12,7 +12,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from topomap.runtime.errors import InputError
-from topomap.runtime.files import text
+from topomap.runtime.files import read_text
 
 MOST = 10**5
 _CHOICE = re.compile(r"\{([^{}]*)\}")
@@ -21,7 +21,7 @@ _CHOICE = re.compile(r"\{([^{}]*)\}")
 def expand(file: str | Path) -> Iterator[tuple[int, list[str]]]:
     """The generate calls of a family file, each with its line."""
     left = MOST
-    for number, line in enumerate(text(file).splitlines(), 1):
+    for number, line in enumerate(read_text(file).splitlines(), 1):
         pieces = _CHOICE.split(line.partition("#")[0])
         fixed, choices = pieces[::2], [_values(choice) for choice in pieces[1::2]]
         left -= math.prod(map(len, choices))

@@ -13,7 +13,8 @@ from topomap.model.experience import DState, Experience, observe
 from topomap.model.topology import Place, label
 from topomap.runtime.errors import InputError
 from topomap.worlds.environment import Environment, plain
-from topomap.worlds.route import checked, letters, snake, tour, walk
+from topomap.worlds.route import checked, letters, snake, walk
+from topomap.worlds.tours import tour
 
 
 @dataclass(frozen=True)

@@ -20,7 +20,7 @@ from topomap.model.experience import MOST_SLOTS
 from topomap.model.topology import Place
 from topomap.runtime import nx
 from topomap.runtime.errors import InputError
-from topomap.runtime.files import data
+from topomap.runtime.files import read_bytes
 from topomap.runtime.limits import LARGEST
 from topomap.worlds.environment import Environment, by_bearing, flat_bearing, plain
 
@@ -33,7 +33,7 @@ def load(file: str | Path, slots: int, north: float) -> tuple[Environment, list[
         raise InputError(f"{file}: {slots} slots: they must be even, from 2 to {MOST_SLOTS}")
     if not math.isfinite(north):
         raise InputError(f"{file}: north {north}: it must be a finite number of degrees")
-    graph = read_graphml(file, data(file))
+    graph = read_graphml(file, read_bytes(file))
     loops = list(nx.selfloop_edges(graph))
     graph.remove_edges_from(loops)
     lone = list(nx.isolates(graph))

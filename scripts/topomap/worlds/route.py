@@ -6,7 +6,6 @@ import re
 from collections.abc import Iterator
 
 from topomap.model.topology import Place, TopologicalMap, label
-from topomap.runtime import nx
 from topomap.runtime.errors import InputError
 from topomap.worlds.environment import EAST, NORTH, SOUTH, WEST, Environment
 
@@ -69,24 +68,6 @@ def walk(world: TopologicalMap, start: Place, seed: int) -> Iterator[int]:
         slot = generator.choice(sorted(world.stars[place]))
         yield slot
         place = world.links[place, slot][0]
-
-
-def tour(world: TopologicalMap, start: Place) -> list[int]:
-    """A closed walk over every way that can be reached, by networkx's ``eulerize``;
-    places and ways in sorted order."""
-    reached = nx.node_connected_component(nx.Graph((a[0], b[0]) for a, b in world.edges()), start)
-    graph: nx.MultiGraph[Place] = nx.MultiGraph()
-    graph.add_nodes_from(sorted(reached))
-    for a, b in sorted(world.edges()):
-        if a[0] in reached:
-            graph.add_edge(a[0], b[0], key=a)
-    route = []
-    for here, there, key in nx.eulerian_circuit(nx.eulerize(graph), source=start, keys=True):
-        # A way walked twice has a key of networkx's own: take the first way there.
-        ways = [s for s in sorted(world.stars[here]) if world.links[here, s][0] == there]
-        keyed = [s for s in ways if key in ((here, s), world.links[here, s])]
-        route.append((keyed or ways)[0])
-    return route
 
 
 def checked(

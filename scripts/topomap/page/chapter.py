@@ -1,5 +1,5 @@
-"""What the page tells of an exploration, found out within a time limit: the best maps, the replay,
-drawings, and counts by clingo."""
+"""A chapter of the page: what it tells of an exploration, found out within a time limit: the best
+maps, the replay, drawings, and counts by clingo."""
 
 import time
 from collections.abc import Iterator
@@ -9,7 +9,7 @@ from topomap.documents import maps
 from topomap.documents.beginnings import beginning
 from topomap.drawing import scenes, shapes
 from topomap.drawing.ready import ready
-from topomap.drawing.scenes import MOST_PLACES, Scene
+from topomap.drawing.scenes import MOST_DRAWN, Scene
 from topomap.drawing.shapes import Drawing
 from topomap.model.experience import Experience
 from topomap.model.found import Cube
@@ -19,6 +19,7 @@ from topomap.runtime.errors import InputError
 from topomap.runtime.limits import LARGEST
 from topomap.runtime.watch import Attempt, Watch
 from topomap.solver import solving
+from topomap.solver.enumeration import best_maps
 
 SMALL = 100  # places in a small picture, at most
 
@@ -47,7 +48,7 @@ def given_maps(file: str, path: str, whole: Experience, query: Query) -> list[Sc
     return made
 
 
-class Exploration:
+class Chapter:
     """What the page tells of an exploration: of its best maps, or of those that are ``given``;
     ``faults`` are what it lacks, and why; ``whole`` tells whether the maps are all of their
     kind."""
@@ -78,8 +79,9 @@ class Exploration:
         now = time.monotonic()
         self.watch.deadline.at = now + seconds / 3
         if not self.given:
-            self.best, fault = scenes.best(self.seen, self.name, self.query, self.watch)
+            found, fault = best_maps(self.seen, self.query, self.watch)
             self.whole = not fault
+            self.best = scenes.of_found(self.seen, self.name, found, self.whole)
             if fault:
                 self.faults.append(f"the best maps: {fault}")
         self.watch.deadline.at = now + seconds / 2
@@ -146,7 +148,7 @@ class Exploration:
     def _draw_best(self, some: list[Scene]) -> Iterator[None]:
         for scene in some:
             self.watch.title(f"picture of map {scene.number}")
-            if len(scene.world.stars) <= MOST_PLACES:
+            if len(scene.world.stars) <= MOST_DRAWN:
                 self._keep(tuple(scene.at), shapes.drawing(scene.world, scene.ahead))
                 yield
 
