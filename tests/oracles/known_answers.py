@@ -6,6 +6,7 @@ load it.
 """
 
 import random
+import re
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from functools import cache, partial
@@ -863,7 +864,38 @@ def together(slots, at, names):
     return frozenset(found)
 
 
+# What each file demands of the ones that it is loaded with.
+GUARD = re.compile(r"^:- not (topomap|paper|online|phases)\.", re.MULTILINE)
+
+
+def alone() -> Iterator[Query]:
+    """Parts without their entry, and what belongs to several calls in a single one: no answer.
+    That no message hides it, each predicate is said to be defined."""
+    texts = {
+        str(path.relative_to(ENCODINGS))[:-3]: path.read_text(encoding="utf-8")
+        for path in ENCODINGS.rglob("*.lp")
+    }
+    atoms = {
+        (name, number)
+        for name, number in re.findall(
+            r"^\| `(\w+)(\([^)]*\))?`", (ENCODINGS / "README.md").read_text(), re.MULTILINE
+        )
+    }
+    defined = " ".join(
+        f"#defined {name}/{number.count(',') + 1 if number else 0}." for name, number in atoms
+    )
+    entries = ("phases/topomap", "phases/visits", "phases/runs", "phases/lines", "online")
+    for file, text in sorted(texts.items()):
+        if GUARD.search(text) and file not in entries:
+            yield Query((file,), defined, frozenset(), ("-c", "places=3"))
+    yield Query(("paper/bound",), defined, frozenset(), ("-c", "places=3"))
+    pairs = "".join(f"{atom}. " for atom in phase_answers.Pairs(CORNERS).shown())
+    for entry in entries[:4]:
+        yield Query((entry,), f"{CORNERS.facts()} {pairs} {defined}", frozenset())
+
+
 SUITES = (
+    alone,
     theory,
     marker,
     given_up,
