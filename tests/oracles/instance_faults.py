@@ -23,7 +23,7 @@ KINDS = {  # what topomap.model.experience says, and the error that says the sam
     r"step (?P<T>\d+): no view .*": "{T},no_view",
     r"step (?P<T>\d+): slot (?P<S>-?\d+) is not in .*": r"{T},slot\({S}\)",
     r"step (?P<T>\d+): the view lacks slot 0.*": "{T},no_slot_0",
-    r"step (?P<T>\d+): turn (?P<S>\d+): no gateway.*": r"{T},no_gateway\({S}\)",
+    r"step (?P<T>\d+): turn (?P<S>-?\d+): no gateway.*": r"{T},no_gateway\({S}\)",
     r"step (?P<T>\d+): the marker is put down.*": "{T},put_down",
     r"step (?P<T>\d+): the marker is taken up.*": "{T},taken_up",
     r"step (?P<T>\d+): the marker is seen.*": "{T},no_marker",

@@ -159,13 +159,12 @@ class Facts:
         if turns and step == 0:
             line = min(turns.values())
             yield Fault("there is a turn, but step 1 is the first with a turn", line, step)
-            return
-        if len(turns) > 1:
+        elif len(turns) > 1:
             yield Fault("more than one turn", sorted(turns.values())[1], step)
         for turn, line in turns.items():
             if slots is not None and not 0 <= turn < slots:
                 yield Fault(f"slot {turn} is not in 0..{slots - 1}", line, step)
-            elif not noisy and step - 1 in self.views and turn not in self.views[step - 1]:
+            elif step and not noisy and step - 1 in self.views and turn not in self.views[step - 1]:
                 said = f"turn {turn}: no gateway there after step {step - 1}{HINT}"
                 yield Fault(said, line, step, lacks=True)
 
