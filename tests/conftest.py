@@ -72,13 +72,7 @@ def pytest_terminal_summary(terminalreporter):
             out.write("\n")
 
 
-def forms(*parts):
-    """The encodings that have these parts: the one that does the work, and the statement."""
-    files = {form: [folder / f"{part}.lp" for part in parts] for form, folder in FORMS.items()}
-    return [form for form in FORMS if all(file.is_file() for file in files[form])]
-
-
-def answers(parts, facts, *arguments, encoding="work"):
+def answers(parts, facts, *arguments, encoding="plain"):
     """The set of hypotheses, as tuples of (place, gateway) by step, that stock clingo
     finds; with a preference among the parts, the best ones. Fails on any message of
     clingo and on an answer given twice."""
@@ -87,14 +81,13 @@ def answers(parts, facts, *arguments, encoding="work"):
     return set(costs(parts, facts, *arguments, encoding=encoding))
 
 
-def costs(parts, facts, *arguments, encoding="work"):
+def costs(parts, facts, *arguments, encoding="plain"):
     """The same with what each costs; with a preference, of all if a bound is an argument."""
     messages = []
     optimal = "--opt-mode=optN" in arguments
     options = ["0", *arguments]
     control = clingo.Control(options, logger=lambda _, text: messages.append(text))
-    marker = ["beyond/marker"] * (encoding == "paper" and "drop(" in facts)
-    for part in ("topomap", *marker, *parts):
+    for part in ("topomap", *parts):
         control.load(str(FORMS[encoding] / f"{part}.lp"))
     control.add("base", [], facts)
     control.ground([("base", [])])

@@ -9,7 +9,7 @@ from typing import Any, TypedDict
 from topomap.model.experience import Experience
 from topomap.model.facts import parse
 from topomap.model.query import Query
-from topomap.model.vocabulary import FORMS, PARTS, STATED
+from topomap.model.vocabulary import FORMS, PARTS
 from topomap.runtime.checks import flag, seconds, shown, whole_if_given
 from topomap.runtime.watch import Watch
 from topomap.worlds.environment import Environment, environment
@@ -47,7 +47,7 @@ def query_of(
     *,
     bound: int | None = None,
     horizon: int | None = None,
-    encoding: str = "work",
+    encoding: str = "fast",
     noise: int | None = None,
     allowed: Collection[str] = tuple(PARTS),
 ) -> Query:
@@ -56,10 +56,6 @@ def query_of(
     asked = frozenset(asked_of(parts, allowed))
     if encoding not in FORMS:
         raise ValueError(f"encoding={encoding!r}: it is {' or '.join(FORMS)}")
-    if encoding == "paper" and (others := sorted(asked - STATED)):
-        raise ValueError(f"encoding='paper' does not state {', '.join(others)}")
-    if encoding == "paper" and noise is not None:
-        raise ValueError("encoding='paper' does not go with noise")
     return Query(
         asked,
         whole_if_given("bound", bound, 1),

@@ -24,7 +24,7 @@ def solve(
     horizon: int | None = None,
     noise: int | None = None,
     by: str = "clingo",
-    encoding: str = "work",
+    encoding: str | None = None,
     limit: int | None = None,
     timeout: float | None = None,
     jobs: int = 1,
@@ -41,9 +41,9 @@ def solve(
             there is none, the best so far, pending gateways allowed.
         bound: the most places that a map may have.
         horizon: the last step that counts.
-        noise: how many views may be wrong, as few as can be.
+        noise: how many views may be wrong, as few as can be; by the plain encoding.
         by: ``clingo``, or ``search``, the paper's own search.
-        encoding: ``work``, or ``paper``, the rules as the paper states them (slow).
+        encoding: ``fast``, or ``plain``, the rules that state the theory (with noise: plain).
         limit: stop after so many maps.
         timeout: seconds of search after which it stops: they begin with the first map that is
             asked for, and wait while the caller has control.
@@ -60,9 +60,12 @@ def solve(
             together.
         InputError: an experience that cannot be, one line that names step and fault.
     """
+    encoding = encoding or ("fast" if noise is None else "plain")
     query = query_of(parts, bound=bound, horizon=horizon, encoding=encoding, noise=noise)
     if not isinstance(by, str) or by not in WAYS:
         raise ValueError(f"{by!r} is not one of the ways {', '.join(WAYS)}")
+    if noise is not None and encoding != "plain":
+        raise ValueError(f"encoding={encoding!r}: with noise it is plain")
     limit, jobs = whole_if_given("limit", limit, 1), whole("jobs", jobs, 1)
     timeout = seconds("timeout", timeout)
     minimises = flag("optimal", optimal) or query.optimizes

@@ -4,7 +4,7 @@ import argparse
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
-from topomap.model.vocabulary import OPTIMIZING, PARTS, STATED
+from topomap.model.vocabulary import OPTIMIZING, PARTS
 from topomap.runtime.errors import InputError, say
 
 if TYPE_CHECKING:
@@ -15,19 +15,17 @@ if TYPE_CHECKING:
 
 
 def parts_of(args: argparse.Namespace, of: Iterable[str] = PARTS) -> dict[str, bool]:
-    """The parts that are asked for. Raises InputError if the encoding does not state one."""
-    parts = {part: True for part in of if getattr(args, part, False)}
-    others = [f"--{part}" for part in parts if part not in STATED]
-    if getattr(args, "encoding", None) == "paper" and others:
-        raise InputError(f"topomap {args.command}: --encoding paper does not state {others[0]}")
-    return parts
+    """The parts that are asked for."""
+    return {part: True for part in of if getattr(args, part, False)}
 
 
 def asked_query(args: argparse.Namespace, of: Iterable[str] = PARTS) -> "Query":
     """The query that asks for these parts, within the bound and the horizon of the call."""
     from topomap.api.parts import query_of
 
-    return query_of(parts_of(args, of), bound=args.bound, horizon=args.horizon)
+    encoding = getattr(args, "encoding", "fast")
+    parts = parts_of(args, of)
+    return query_of(parts, bound=args.bound, horizon=args.horizon, encoding=encoding)
 
 
 def crew_of(args: argparse.Namespace) -> "Crew":
