@@ -5,17 +5,17 @@ import operator
 import threading
 from collections.abc import Generator, Iterator, Sequence
 from contextlib import AbstractContextManager
-from dataclasses import replace
 from itertools import islice
 from typing import SupportsIndex, overload
 
 from topomap.api.maps import Map
 from topomap.model.experience import Experience
-from topomap.model.found import UNPROVED, Found
+from topomap.model.found import Found
 from topomap.model.query import Query
 from topomap.model.words import number
 from topomap.runtime.status import INTERRUPT
 from topomap.runtime.watch import Attempt, Stopped, Watch
+from topomap.solver.enumeration import proved_or_last
 
 CLOSED = "closed"  # why an answer is partial that was not wanted any more
 UNFINISHED = "not finished"
@@ -206,21 +206,14 @@ def _search(
     """The maps as they come; what is known of them is noted before each one is handed out. It
     is complete only if it came to its end by itself."""
     known.begun = True
-    candidate = None
     try:
         with contextlib.closing(coming), Attempt() as attempt:
-            for found in coming:
-                if not found.proved:
-                    candidate = found
-                elif known.count == limit:
+            for found in proved_or_last(coming):
+                if known.count == limit:
                     raise Stopped("limit")
-                else:
-                    one = known.add(found)
-                    with _at_rest(watch):
-                        yield one
-        if attempt.fault and candidate and not known.count:
-            known.fault = attempt.fault
-            yield known.add(replace(candidate, kind=UNPROVED))
+                one = known.add(found)
+                with _at_rest(watch):
+                    yield one
         known.fault = attempt.fault
     except GeneratorExit:
         known.fault = CLOSED if known.fault == UNFINISHED else known.fault
