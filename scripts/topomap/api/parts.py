@@ -47,15 +47,19 @@ def query_of(
     *,
     bound: int | None = None,
     horizon: int | None = None,
-    encoding: str = "fast",
+    encoding: str | None = None,
     noise: int | None = None,
     allowed: Collection[str] = tuple(PARTS),
 ) -> Query:
     """The query that asks for the parts that are true. Raises ValueError, naming the known ones,
-    if one is not among those that are allowed, and if something else is not what it may be."""
+    if one is not among those that are allowed, and if something else is not what it may be. The
+    encoding is the fast one where nothing else is said, and with ``noise`` the plain one."""
     asked = frozenset(asked_of(parts, allowed))
+    encoding = encoding or ("fast" if noise is None else "plain")
     if encoding not in FORMS:
         raise ValueError(f"encoding={encoding!r}: it is {' or '.join(FORMS)}")
+    if noise is not None and encoding != "plain":
+        raise ValueError(f"encoding={encoding!r}: with noise it is plain")
     return Query(
         asked,
         whole_if_given("bound", bound, 1),

@@ -2,10 +2,9 @@
 those in a file of maps."""
 
 from collections.abc import Sequence
-from typing import NamedTuple, cast
+from typing import NamedTuple
 
-from topomap.api.parts import Parts
-from topomap.api.solve import solve
+from topomap.api.solve import solve_under
 from topomap.documents import maps
 from topomap.drawing import scenes
 from topomap.drawing.scenes import Scene
@@ -41,14 +40,7 @@ def scenes_under(watch: Watch, path: str, query: Query, given: str | None = None
         found = [scene for document in documents for scene in scenes.of_document(document)]
         return Choice(found, _missing(documents, found), False)
     experience = parse(content, path)
-    answer = solve(
-        experience,
-        optimal=True,
-        bound=query.places,
-        horizon=query.horizon,
-        watch=watch,
-        **cast(Parts, dict.fromkeys(query.parts, True)),
-    )
+    answer = solve_under(watch, experience, query, optimal=True)
     best = [one.found for one in sorted(answer, key=lambda one: one.at)]
     shown = scenes.of_found(experience, path, best, answer.complete)
     return Choice(shown, answer.fault, True)

@@ -1,6 +1,5 @@
 """Enumerating the maps of an experience."""
 
-import contextlib
 from collections.abc import Generator
 from typing import Unpack
 
@@ -8,6 +7,7 @@ from topomap.api.answer import Answer
 from topomap.api.parts import Parts, begin, query_of
 from topomap.model.experience import Experience
 from topomap.model.found import Found
+from topomap.model.query import Query
 from topomap.runtime.checks import flag, seconds, whole, whole_if_given
 from topomap.runtime.journal import Journal
 from topomap.runtime.watch import Deadline, Watch
@@ -28,9 +28,6 @@ def solve(
     limit: int | None = None,
     timeout: float | None = None,
     jobs: int = 1,
-    watch: Watch | None = None,
-    journal: Journal | None = None,
-    crew: Crew | None = None,
     **parts: Unpack[Parts],
 ) -> Answer:
     """Enumerate the maps that are consistent with an experience (the paper, sections II, III).
@@ -48,7 +45,6 @@ def solve(
         timeout: seconds of search after which it stops: they begin with the first map that is
             asked for, and wait while the caller has control.
         jobs: how many processes do the work; not with what minimises.
-        watch, journal, crew: those of a command; then ``timeout`` and ``jobs`` are not used.
         parts: what the maps are to have.
 
     Returns:
@@ -60,26 +56,37 @@ def solve(
             together.
         InputError: an experience that cannot be, one line that names step and fault.
     """
-    encoding = encoding or ("fast" if noise is None else "plain")
     query = query_of(parts, bound=bound, horizon=horizon, encoding=encoding, noise=noise)
     if not isinstance(by, str) or by not in WAYS:
         raise ValueError(f"{by!r} is not one of the ways {', '.join(WAYS)}")
-    if noise is not None and encoding != "plain":
-        raise ValueError(f"encoding={encoding!r}: with noise it is plain")
     limit, jobs = whole_if_given("limit", limit, 1), whole("jobs", jobs, 1)
     timeout = seconds("timeout", timeout)
-    minimises = flag("optimal", optimal) or query.optimizes
-    if minimises and (jobs > 1 or (crew not in (None, ALONE))):
+    if (flag("optimal", optimal) or query.optimizes) and jobs > 1:
         raise ValueError("jobs: all maps are shared out, not the best ones")
     if noise is not None and by == "search":
         raise ValueError("noise does not go with by='search'")
-    begun = begin(experience, None, watch, noise is not None)
+    watch = begin(experience, None, None, noise is not None)
 
     def coming() -> Generator[Found, None, None]:
-        if watch is None:
-            begun.deadline = Deadline(timeout)
-        with contextlib.ExitStack() as stack:
-            workers = crew or stack.enter_context(crew_of(jobs))
-            yield from every(experience, query, begun, by, optimal, journal, workers)
+        watch.deadline = Deadline(timeout)
+        with crew_of(jobs) as crew:
+            yield from every(experience, query, watch, by, optimal, None, crew)
 
-    return Answer(experience, query, coming(), limit, begun if watch is None else None)
+    return Answer(experience, query, coming(), limit, watch)
+
+
+def solve_under(
+    watch: Watch,
+    experience: Experience,
+    query: Query,
+    *,
+    by: str = "clingo",
+    optimal: bool = False,
+    limit: int | None = None,
+    journal: Journal | None = None,
+    crew: Crew = ALONE,
+) -> Answer:
+    """The same of the maps of a query, under the watch of a command, which may have a journal of
+    the work and a crew for it."""
+    coming = every(experience, query, watch, by, optimal, journal, crew)
+    return Answer(experience, query, coming, limit)

@@ -23,9 +23,13 @@ def asked_query(args: argparse.Namespace, of: Iterable[str] = PARTS) -> "Query":
     """The query that asks for these parts, within the bound and the horizon of the call."""
     from topomap.api.parts import query_of
 
-    encoding = getattr(args, "encoding", "fast")
-    parts = parts_of(args, of)
-    return query_of(parts, bound=args.bound, horizon=args.horizon, encoding=encoding)
+    return query_of(
+        parts_of(args, of),
+        bound=args.bound,
+        horizon=args.horizon,
+        encoding=getattr(args, "encoding", None),
+        noise=getattr(args, "noise", None),
+    )
 
 
 def crew_of(args: argparse.Namespace) -> "Crew":

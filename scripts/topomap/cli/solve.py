@@ -13,7 +13,7 @@ from topomap.cli.arguments import (
     command,
     number,
 )
-from topomap.cli.calls import crew_of, parts_of, run_of
+from topomap.cli.calls import asked_query, crew_of, run_of
 from topomap.model.vocabulary import PARTS
 from topomap.runtime import formats
 from topomap.runtime.errors import InputError, say
@@ -116,24 +116,20 @@ def _solve_one(
     out: IO[str],
 ) -> tuple[str | None, bool]:
     """Write the maps of an instance; why they may not be all, if so, and whether there are any."""
-    from topomap.api.solve import solve
+    from topomap.api.solve import solve_under
     from topomap.documents.answers import Report
     from topomap.runtime.watch import Attempt, heeding
 
     with heeding(args.timeout) as watch:
-        answer = solve(
+        answer = solve_under(
+            watch,
             experience,
-            optimal=args.optimal,
-            bound=args.bound,
-            horizon=args.horizon,
-            noise=args.noise,
+            asked_query(args),
             by=args.by,
-            encoding=args.encoding,
+            optimal=args.optimal,
             limit=args.limit,
-            watch=watch,
             journal=journal,
             crew=crew,
-            **parts_of(args),
         )
         kind = "optimal" if args.optimal else None
         report = Report(out, path, experience, answer.query, kind, truth, args.json)

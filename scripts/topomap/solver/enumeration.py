@@ -2,7 +2,7 @@
 of a journal, alone or shared out."""
 
 from array import array
-from collections.abc import Iterator
+from collections.abc import Generator, Iterator
 from dataclasses import replace
 from functools import partial
 
@@ -28,7 +28,7 @@ def every(
     optimal: bool = False,
     journal: Journal | None = None,
     crew: Crew = ALONE,
-) -> Iterator[Found]:
+) -> Generator[Found, None, None]:
     """The maps of a query, or the best of them if ``optimal`` (better and better ones come
     before those that are proved); ``by`` is one of WAYS. If there is a journal or a crew, and
     nothing is minimised, branch by branch of the tree. Raises Stopped."""
