@@ -234,7 +234,7 @@ def test_a_robot_comes_to_what_the_command_writes(topomap, world, asked, options
     told = json.loads(topomap("simulate", *world, *options, "--json").stdout)
     assert told.pop("format") == 1
     assert told == {**made.document(), "complete": made.complete, "fault": made.fault}
-    assert topomap("simulate", *world, *options).stdout == str(made)
+    assert topomap("simulate", *world, *options).stdout == f"{made}\n"
     assert (made.end, made.steps, made.truth) == (told["end"], told["steps"], told["truth"])
     assert (made.tour, made.random) == (told["tour"], told["random"])
     assert len(made.maps) == (told["best_maps"] or 0)
@@ -255,7 +255,7 @@ def test_a_time_limit_is_for_the_walks_of_others_too():
     assert (made.complete, made.fault, made.tour, made.random) == (False, "timeout", None, None)
     assert str(made).endswith(
         "a tour over every way, by one who knows the map: not known; partial: timeout\n"
-        "a random walk over every way (median): not known; partial: timeout\n"
+        "a random walk over every way (median): not known; partial: timeout"
     )
 
 

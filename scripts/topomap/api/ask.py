@@ -137,7 +137,7 @@ def ask(
     for text in statement:
         demand_text("statement", text, "same(3,12)")
     flag("optimal", optimal)
-    return ask_under(begin(experience, timeout, None), experience, statement, query, optimal)
+    return ask_under(begin(experience, timeout), experience, statement, query, optimal)
 
 
 def ask_under(

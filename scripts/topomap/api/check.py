@@ -11,6 +11,7 @@ from topomap.documents import maps as read
 from topomap.documents.maps import Document
 from topomap.documents.verdicts import Judged, verdicts
 from topomap.model.experience import Experience
+from topomap.model.query import Query
 from topomap.model.topology import TopologicalMap
 from topomap.model.vocabulary import PROPERTIES
 from topomap.runtime.checks import integer, shown
@@ -28,7 +29,6 @@ def check(
     noise: int | None = None,
     truth: TopologicalMap | None = None,
     timeout: float | None = None,
-    watch: Watch | None = None,
     **parts: Unpack[Parts],
 ) -> Judged:
     """Judge maps by two checkers that share no rule with the theory (the paper, sections II, III);
@@ -45,7 +45,6 @@ def check(
         noise: how many views a map may disbelieve.
         truth: the real map, for maps that say whether they are it (the key ``real``).
         timeout: seconds after which no further map is begun.
-        watch: that of a command; then ``timeout`` is not used.
         parts: what the maps are to have; genus, minimal and euler are none that one map has.
 
     Returns:
@@ -62,7 +61,18 @@ def check(
     if truth is not None and not isinstance(truth, TopologicalMap):
         raise TypeError(f"truth: a TopologicalMap is wanted, not {shown(truth)}")
     documents = _documents(maps)
-    watch = begin(experience, timeout, watch, noise is not None or read.noisy(documents))
+    watch = begin(experience, timeout, noise is not None or read.noisy(documents))
+    return check_under(watch, experience, documents, query, truth)
+
+
+def check_under(
+    watch: Watch,
+    experience: Experience,
+    documents: list[Document],
+    query: Query,
+    truth: TopologicalMap | None,
+) -> Judged:
+    """The same of documents that were read, under the watch of a command."""
     demands = [part for part in PROPERTIES if part in query.parts]
     demands += [f"bound({query.places})"] if query.places else []
     judged = Judged(sum(len(one.maps) for one in documents), experience.steps, demands)

@@ -88,7 +88,7 @@ def count(
     """
     query = query_of(parts, bound=bound, horizon=horizon, encoding=encoding, allowed=DEMANDS)
     jobs = whole("jobs", jobs, 1)
-    watch = begin(experience, timeout, None)
+    watch = begin(experience, timeout)
     with crew_of(jobs) as crew:
         return count_under(watch, experience, query, Journal(), crew)
 

@@ -120,7 +120,7 @@ def explain(
     query = query_of(parts, bound=bound, horizon=horizon, allowed=DEMANDS)
     if statement is not None:
         demand_text("statement", statement, "same(3,12)")
-    return explain_under(begin(experience, timeout, None), experience, statement, query)
+    return explain_under(begin(experience, timeout), experience, statement, query)
 
 
 def explain_under(

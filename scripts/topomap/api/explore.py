@@ -1,7 +1,7 @@
 """Where to go next, so that the maps are told apart."""
 
 import os
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from functools import cached_property
 from typing import Any, Unpack
 
@@ -9,6 +9,8 @@ from topomap.api.maps import Map
 from topomap.api.parts import Parts, begin, demand_experience, path_of, query_of
 from topomap.model.experience import Experience
 from topomap.model.found import Found
+from topomap.model.query import Query
+from topomap.model.reply import Reply
 from topomap.model.vocabulary import PRUNING
 from topomap.questions import proofs
 from topomap.questions.candidates import PARTS_OF, At, Candidates, gather
@@ -25,10 +27,11 @@ _ONE = (str, os.PathLike, Map)
 _WANTED = f"a Map, a kind of maps ({', '.join(PARTS_OF)}) or a file of maps is wanted, or several"
 
 
-class NextWalk:
+class NextWalk(Reply):
     """A further walk, and what the maps in question predict of it."""
 
     def __init__(self, among: Candidates, planned: Planned | None):
+        super().__init__(planned.fault if planned else among.fault)
         self.among, self.planned = among, planned
 
     @cached_property
@@ -82,31 +85,15 @@ class NextWalk:
         """The pairs of maps that the walk does not tell apart, and why."""
         return self.planned.plan.untold if self.planned else ()
 
-    @property
-    def fault(self) -> str | None:
-        """Why there may be other maps, or a better walk; None if neither is so."""
-        return self.planned.fault if self.planned else self.among.fault
-
-    @property
-    def complete(self) -> bool:
-        """Whether the maps are all, and the walk is proved to be best."""
-        return self.fault is None
-
     def lines(self) -> Iterator[str]:
-        """The answer to read, as ``topomap explore`` prints it."""
         return self.planned.lines() if self.planned else iter([self.among.lack()])
 
     def document(self) -> dict[str, Any]:
-        """The answer as ``topomap explore --json`` writes it, but for the name of the instance
-        and the keys that all answers have (``docs/formats.md``)."""
         return self.planned.document() if self.planned else {"maps": []}
 
     def proofs(self) -> dict[str, Any]:
         """Why no walk tells maps apart, as ``--proof`` writes it, for ``check_proofs``."""
         return proofs.proofs(self.planned) if self.planned else {}
-
-    def __str__(self) -> str:
-        return "\n".join(self.lines())
 
 
 def candidates(
@@ -116,14 +103,20 @@ def candidates(
     bound: int | None = None,
     horizon: int | None = None,
     timeout: float | None = None,
-    watch: Watch | None = None,
     **parts: Unpack[Parts],
 ) -> Candidates:
     """The maps that may be the real one. Parameters and errors are those of ``explore``; the
     maps are in ``each``, and ``facts()`` gives them to ``encodings/explore.lp``."""
     query = query_of(parts, bound=bound, horizon=horizon, allowed=PRUNING)
     asked = _asked(among)
-    watch = begin(experience, timeout, watch)
+    return candidates_under(begin(experience, timeout), experience, asked, query)
+
+
+def candidates_under(
+    watch: Watch, experience: Experience, asked: Sequence[str | At], query: Query
+) -> Candidates:
+    """The same of kinds of maps and files, by name, and maps, by their dstates, under the watch of
+    a command."""
     cut = experience.cut(LARGEST if query.horizon is None else query.horizon)
     return gather(experience, cut, query, asked, watch)
 
@@ -155,7 +148,6 @@ def explore(
     bound: int | None = None,
     horizon: int | None = None,
     timeout: float | None = None,
-    watch: Watch | None = None,
     **parts: Unpack[Parts],
 ) -> NextWalk:
     """Say where to go next: the shortest further walk that tells the maps apart, or leaves the
@@ -173,7 +165,6 @@ def explore(
         bound: the most places that a map may have.
         horizon: the last step that counts.
         timeout: seconds after which it stops.
-        watch: that of a command; then ``timeout`` is not used.
         parts: what the maps are to have: ``planar`` and ``perpendicular``.
 
     Returns:
@@ -186,13 +177,19 @@ def explore(
             of this experience.
     """
     steps, marker = whole("steps", steps, 1, MOST_WALKED), flag("marker", marker)
-    watch = begin(experience, timeout, watch)
+    query = query_of(parts, bound=bound, horizon=horizon, allowed=PRUNING)
+    asked = [] if isinstance(among, Candidates) else _asked(among)
+    watch = begin(experience, timeout)
     if isinstance(among, Candidates):
-        query_of(parts, bound=bound, horizon=horizon, allowed=PRUNING)
         if parts or bound is not None or horizon is not None:
             raise ValueError("bound, horizon and parts are told to candidates, not to explore")
     else:
-        among = candidates(experience, among, bound=bound, horizon=horizon, watch=watch, **parts)
+        among = candidates_under(watch, experience, asked, query)
+    return explore_under(watch, among, marker, steps)
+
+
+def explore_under(watch: Watch, among: Candidates, marker: bool, steps: int) -> NextWalk:
+    """The same of the maps in question, under the watch of a command."""
     if not among.each:
         return NextWalk(among, None)
     watch.title("the next walk")

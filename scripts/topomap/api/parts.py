@@ -88,16 +88,11 @@ def demand_experience(experience: object) -> None:
         raise TypeError(f"an Experience is wanted, which topomap.read(path) gives, not {told}")
 
 
-def begin(
-    experience: Experience, timeout: float | None, watch: Watch | None, noisy: bool = False
-) -> Watch:
-    """The watch of a call: that of a command, which has read the experience and so checked it;
-    or a new one, once an experience that may have been made in Python is checked. Raises
+def begin(experience: Experience, timeout: float | None, noisy: bool = False) -> Watch:
+    """The watch of a call, once an experience that may have been made in Python is checked. Raises
     TypeError if it is no experience; InputError, one line, if it cannot be, where ``noisy``
     allows what may be a misreading; ValueError if the time limit is no number of seconds."""
     demand_experience(experience)
-    if watch is not None:
-        return watch
     limit = seconds("timeout", timeout)
     parse(experience.facts(), "the experience, as facts", noisy)
     return Watch(limit)

@@ -1,5 +1,6 @@
 """A robot that explores a world which it does not know."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, Unpack
@@ -7,6 +8,8 @@ from typing import Any, Unpack
 from topomap.api.maps import Map
 from topomap.api.parts import Parts, query_of, world_of
 from topomap.model.experience import Experience
+from topomap.model.query import Query
+from topomap.model.reply import Reply
 from topomap.model.vocabulary import PRUNING
 from topomap.questions.robot import Outcome, start_of
 from topomap.questions.robot import simulate as explored
@@ -18,8 +21,8 @@ from topomap.worlds.environment import Environment
 STEPS = 20  # for each way
 
 
-@dataclass(frozen=True)
-class Simulation:
+@dataclass(frozen=True, repr=False)
+class Simulation(Reply):
     """What came of a robot in the environment of that name."""
 
     name: str
@@ -74,19 +77,11 @@ class Simulation:
         neither is so."""
         return self.outcome.fault
 
-    @property
-    def complete(self) -> bool:
-        """Whether the robot came to an end, so that more walking would tell it nothing; and the
-        walks for comparison did, too."""
-        return self.fault is None
-
     def document(self) -> dict[str, Any]:
-        """The same as ``topomap simulate --json`` writes it, but for its format and its end."""
         return {"environment": self.name, **self.outcome.document()}
 
-    def __str__(self) -> str:
-        """The lines that ``topomap simulate`` prints."""
-        return self.outcome.text(self.name)
+    def lines(self) -> Iterator[str]:
+        return self.outcome.lines(self.name)
 
 
 def simulate(
@@ -101,7 +96,6 @@ def simulate(
     marker: bool = False,
     bound: int | None = None,
     timeout: float | None = None,
-    watch: Watch | None = None,
     **parts: Unpack[Parts],
 ) -> Simulation:
     """Let a robot explore a world until it has one closed optimal map, or no walk can tell its
@@ -119,7 +113,6 @@ def simulate(
         marker: whether the robot carries a marker that it may put down.
         bound: what it takes for granted: so many places at most.
         timeout: stop after so many seconds, the walks for comparison too.
-        watch: what stops the search and shows its progress, instead of ``timeout``.
         parts: what it takes for granted: ``planar``, ``perpendicular``.
 
     Returns:
@@ -138,11 +131,23 @@ def simulate(
         whole_if_given("steps", steps, 0, MOST_STEPS),
         whole_if_given("facing", facing, 0),
     )
-    marker, limit = flag("marker", marker), seconds("timeout", timeout)
-    watch = Watch(limit) if watch is None else watch
+    marker, watch = flag("marker", marker), Watch(seconds("timeout", timeout))
     world = world_of(world, size, thin, seed)
     if signs:
         world = world.signed(signs, seed)
+    return simulate_under(watch, world, query, start, facing, steps, marker)
+
+
+def simulate_under(
+    watch: Watch,
+    world: Environment,
+    query: Query,
+    start: str | None,
+    facing: int | None,
+    steps: int | None,
+    marker: bool,
+) -> Simulation:
+    """The same in an environment that was made, under the watch of a command."""
     there, dstate = start_of(world, start, facing)
     most = min(STEPS * len(there.links) // 2, MOST_STEPS) if steps is None else steps
     return Simulation(world.name, explored(there, dstate, query, watch, most, marker))

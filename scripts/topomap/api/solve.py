@@ -65,7 +65,7 @@ def solve(
         raise ValueError("jobs: all maps are shared out, not the best ones")
     if noise is not None and by == "search":
         raise ValueError("noise does not go with by='search'")
-    watch = begin(experience, None, None, noise is not None)
+    watch = begin(experience, None, noise is not None)
 
     def coming() -> Generator[Found, None, None]:
         watch.deadline = Deadline(timeout)

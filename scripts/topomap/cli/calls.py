@@ -26,7 +26,7 @@ def asked_query(args: argparse.Namespace, of: Iterable[str] = PARTS) -> "Query":
     return query_of(
         parts_of(args, of),
         bound=args.bound,
-        horizon=args.horizon,
+        horizon=getattr(args, "horizon", None),
         encoding=getattr(args, "encoding", None),
         noise=getattr(args, "noise", None),
     )

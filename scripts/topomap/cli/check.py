@@ -4,12 +4,11 @@ import argparse
 from typing import Any
 
 from topomap.cli.arguments import add_query, command, number
-from topomap.cli.calls import parts_of
+from topomap.cli.calls import asked_query
+from topomap.cli.tell import tell
 from topomap.model.vocabulary import PROPERTIES
-from topomap.runtime import formats
 from topomap.runtime.errors import InputError
 from topomap.runtime.files import output
-from topomap.runtime.status import exit_status
 
 
 def add(group: Any) -> None:
@@ -44,7 +43,7 @@ def add(group: Any) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Check maps that anyone made, by rules and by definition."""
-    from topomap.api.check import check
+    from topomap.api.check import check_under
     from topomap.documents import maps
     from topomap.model.facts import read
     from topomap.runtime.watch import heeding
@@ -57,18 +56,6 @@ def run(args: argparse.Namespace) -> int:
     truth = maps.real_map(args.truth, experience, None) if args.truth else None
     with output(args.output) as out:
         with heeding(args.timeout) as watch:
-            judged = check(
-                experience,
-                documents,
-                bound=args.bound,
-                noise=args.noise,
-                truth=truth,
-                watch=watch,
-                **parts_of(args, PROPERTIES),
-            )
-        if args.json:
-            answer = {"instance": args.instance, **judged.document()}
-            out.write(formats.line(answer, judged.fault))
-        else:
-            out.writelines(f"{line}\n" for line in judged.lines())
-    return exit_status(judged.fault, not judged.unsound)
+            query = asked_query(args, PROPERTIES)
+            judged = check_under(watch, experience, documents, query, truth)
+        return tell(args, out, judged, not judged.unsound, args.instance)

@@ -5,7 +5,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from topomap.cli.arguments import add_query, command, number
-from topomap.cli.calls import parts_of
+from topomap.cli.calls import asked_query
+from topomap.cli.tell import tell
 from topomap.model.vocabulary import PRUNING
 from topomap.runtime import formats
 from topomap.runtime.errors import InputError, say
@@ -67,8 +68,8 @@ def add(group: Any) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Say where to go next."""
-    from topomap.api.explore import candidates, explore
-    from topomap.model.facts import read
+    from topomap.api.explore import candidates_under, explore_under
+    from topomap.api.read import read
     from topomap.runtime.watch import heeding
 
     experience = read(args.instance)
@@ -77,29 +78,22 @@ def run(args: argparse.Namespace) -> int:
     if args.check:
         return _check(args, experience)
     with output(args.output) as out, heeding(args.timeout) as watch:
-        among = candidates(
-            experience,
-            args.among or "optimal",
-            bound=args.bound,
-            horizon=args.horizon,
-            watch=watch,
-            **parts_of(args, PRUNING),
-        )
+        asked = args.among or ["optimal"]
+        among = candidates_under(watch, experience, asked, asked_query(args, PRUNING))
         if args.facts and among.each:
             out.write(among.facts(args.marker))
             return exit_status(among.fault, True)
-        made = explore(experience, among, marker=args.marker, steps=args.steps, watch=watch)
+        made = explore_under(watch, among, args.marker, args.steps)
         if args.proof and among.each:
             with output(args.proof) as file:
                 told = {"instance": args.instance, **made.proofs()}
                 file.write(formats.line(told, made.fault))
         if not among.each:
             say(f"{args.instance}: {among.lack()}")
-        if args.json:
-            out.write(formats.line({"instance": args.instance, **made.document()}, made.fault))
-        elif among.each:
-            out.writelines(f"{line}\n" for line in made.lines())
-    return exit_status(made.fault, made.kind not in ("bisimilar", "no map"))
+        yes = made.kind not in ("bisimilar", "no map")
+        if args.json or among.each:
+            return tell(args, out, made, yes, args.instance)
+        return exit_status(made.fault, yes)
 
 
 def _check(args: argparse.Namespace, experience: "Experience") -> int:
@@ -108,8 +102,4 @@ def _check(args: argparse.Namespace, experience: "Experience") -> int:
 
     checked = check_proofs(experience, args.check, horizon=args.horizon)
     with output(args.output) as out:
-        if args.json:
-            out.write(formats.line({"instance": args.instance, **checked.document()}))
-        else:
-            out.writelines(f"{line}\n" for line in checked.lines())
-    return exit_status(None, not checked.wrong)
+        return tell(args, out, checked, not checked.wrong, args.instance)

@@ -14,7 +14,8 @@ from topomap.cli.arguments import (
     command,
     number,
 )
-from topomap.cli.calls import environment_of, parts_of
+from topomap.cli.calls import asked_query, environment_of
+from topomap.cli.tell import tell
 from topomap.model.vocabulary import PRUNING
 from topomap.runtime import formats
 from topomap.runtime.errors import InputError
@@ -86,8 +87,7 @@ def run(args: argparse.Namespace) -> int:
         if instance:
             instance.write(f"% what a robot did and saw in {made.name}\n\n")
             instance.write(made.experience.facts())
-        out.write(formats.line(made.document(), made.fault) if args.json else str(made))
-    return exit_status(made.fault, made.outcome.found)
+        return tell(args, out, made, made.outcome.found)
 
 
 def _environment(args: argparse.Namespace) -> "Environment":
@@ -104,18 +104,11 @@ def _environment(args: argparse.Namespace) -> "Environment":
 def _simulated(
     args: argparse.Namespace, environment: "Environment", watch: "Watch"
 ) -> "Simulation":
-    from topomap.api.simulate import simulate
+    from topomap.api.simulate import simulate_under
 
-    return simulate(
-        environment,
-        start=args.start,
-        facing=args.facing,
-        steps=args.steps,
-        marker=args.marker,
-        bound=args.bound,
-        watch=watch,
-        **parts_of(args, PRUNING),
-    )
+    query = asked_query(args, PRUNING)
+    how = args.start, args.facing, args.steps, args.marker
+    return simulate_under(watch, environment, query, *how)
 
 
 def _list(args: argparse.Namespace) -> int:

@@ -101,29 +101,26 @@ class Outcome:
             "random": self.random,
         }
 
-    def text(self, name: str) -> str:
-        """The same in words, in lines; ``name`` is the environment's."""
+    def lines(self, name: str) -> Iterator[str]:
+        """The same to read; ``name`` is the environment's."""
         world = self.world
         ways = len(world.links) // 2
-        lines = [
-            f"{name}: {number(len(world.stars), 'place')}, {number(ways, 'way')}, "
-            f"{number(len(world.landmarks), 'sign')}",
-            f"{number(self.steps, 'step')} walked: " + self._end(),
-        ]
+        signs = number(len(world.landmarks), "sign")
+        yield f"{name}: {number(len(world.stars), 'place')}, {number(ways, 'way')}, {signs}"
+        yield f"{number(self.steps, 'step')} walked: {self._end()}"
         if not world.boundaries_consistent():
-            lines.append("the truth has inconsistent boundaries, and so is never optimal")
+            yield "the truth has inconsistent boundaries, and so is never optimal"
         so_far = " so far" * (self.end not in ENDED)
         if self.maps and self.truth is None:
             many = number(len(self.maps), "best map")
             or_more = " or more" * (len(self.maps) == MOST_MAPS)
-            lines.append(f"{many}{or_more}{so_far}; what the truth is, is open")
+            yield f"{many}{or_more}{so_far}; what the truth is, is open"
         elif len(self.maps) == 1:
-            lines.append(f"the best map{so_far} is {'' if self.truth else 'not '}the truth")
+            yield f"the best map{so_far} is {'' if self.truth else 'not '}the truth"
         elif self.maps:
             is_there = "" if self.truth else "not "
-            lines.append(f"{len(self.maps)} best maps{so_far}, the truth is {is_there}among them")
-        lines += self.others.lines()
-        return "".join(line + "\n" for line in lines)
+            yield f"{len(self.maps)} best maps{so_far}, the truth is {is_there}among them"
+        yield from self.others.lines()
 
     def _end(self) -> str:
         """How it ended, in words."""
