@@ -154,6 +154,24 @@ def test_the_page_for_newcomers_names_what_is_there():
     assert {f"{room.name}/" for room in rooms} <= set(re.findall(r"\b\w+/", page))
 
 
+def test_the_page_for_newcomers_names_what_is_in_the_files():
+    """Functions, classes and constants that it names together with their file."""
+    page = re.sub(r"\s+", " ", (DOCS / "DEVELOPMENT.md").read_text())
+    before = re.findall(r"`(\w+)`,? (?:\(|in )`([\w/]+\.py)`", page)
+    after = [pair[::-1] for pair in re.findall(r"`([\w/]+\.py)` \(`(\w+)`", page)]
+    assert len(before + after) > 20
+    for name, file in before + after:
+        texts = [
+            path.read_text()
+            for top in ("", "scripts/topomap")
+            if (path := ROOT / top / file).is_file()
+        ]
+        assert any(
+            re.search(rf"^(?:def|class) {name}\b|^{name}\b.* = ", text, re.MULTILINE)
+            for text in texts
+        ), (name, file)
+
+
 # The name topomap on PyPI is another project's. So what is installed here is a path: a folder,
 # or the file of a wheel.
 INSTALL = re.compile(r"\bpip3? install\s+(?:--?[\w-]+(?:=\S+)?\s+)*([^\s`-][^\s`]*)")
