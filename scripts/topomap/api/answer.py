@@ -61,8 +61,8 @@ class Answer(Sequence[Map]):
         limit: int | None = None,
         watch: Watch | None = None,
     ):
-        """The maps that are ``coming``, so many at most. The time limit of the ``watch`` waits
-        while the caller has control; None if that is not so, as in a command."""
+        """The maps that are ``coming``, at most ``limit`` of them. The time limit of the ``watch``
+        waits while the caller has control; with None no time limit waits, as in a command."""
         self.experience, self.query = experience, query
         self._watch = watch
         self._known = _Known(experience, query)

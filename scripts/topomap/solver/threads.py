@@ -90,7 +90,7 @@ class _Worker:
 
 
 class _Life:
-    """What only a thread holds: when it is gone, so is the thread."""
+    """An object to which only a running thread refers: once it is gone, the thread has ended."""
 
 
 class _Run:
