@@ -5,7 +5,7 @@ import re
 
 import clingo
 from conftest import ENCODINGS
-from topomap.model.facts import ARITY
+from topomap.model.facts import SIGNATURES
 from topomap.runtime.limits import LARGEST
 
 from oracles.worlds import random_experience
@@ -58,10 +58,10 @@ def corrupted(draw):
     for _ in range(draw.choice([0, 1, 1, 1, 2, 3])):
         terms = [str(draw.choice(NUMBERS)) if draw.random() < 0.8 else draw.choice(TERMS)]
         terms.append(str(draw.choice(NUMBERS)) if draw.random() < 0.8 else draw.choice(TERMS))
-        name = draw.choice(list(ARITY))
+        name = draw.choice(list(SIGNATURES))
         edit = draw.choice(["drop", "add", "change", "change", "shift"]) if facts else "add"
         if edit == "add":
-            facts.append([name, *terms[: ARITY[name]]])
+            facts.append([name, *terms[: SIGNATURES[name].count(",") + 1]])
         elif edit == "drop":
             del facts[draw.randrange(len(facts))]
         elif edit == "change":

@@ -28,7 +28,8 @@ _WANTED = f"a Map, a kind of maps ({', '.join(PARTS_OF)}) or a file of maps is w
 
 
 class NextWalk(Reply):
-    """A further walk, and what the maps in question predict of it."""
+    """A further walk, and what the maps in question predict of it. ``fault`` says why there may be
+    other maps, or a better walk."""
 
     def __init__(self, among: Candidates, planned: Planned | None):
         super().__init__(planned.fault if planned else among.fault)

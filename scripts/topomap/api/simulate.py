@@ -23,7 +23,8 @@ STEPS = 20  # for each way
 
 @dataclass(frozen=True, repr=False)
 class Simulation(Reply):
-    """What came of a robot in the environment of that name."""
+    """What came of a robot in the environment of that name. It is ``complete`` if the robot came to
+    an end, so that more walking would tell it nothing, and the walks for comparison did, too."""
 
     name: str
     outcome: Outcome

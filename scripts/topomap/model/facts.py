@@ -26,7 +26,6 @@ SIGNATURES = {  # the facts of an instance
     "landmark": "landmark(T,L)",
     **{name: f"{name}(T)" for name in MARKER},
 }
-ARITY = {name: form.count(",") + 1 for name, form in SIGNATURES.items()}
 HINT = " (misread? solve --noise allows for that)"
 
 
