@@ -72,7 +72,13 @@ def pytest_terminal_summary(terminalreporter):
             out.write("\n")
 
 
-def answers(parts, facts, *arguments, encoding="plain"):
+def forms(*parts):
+    """The encodings that have these parts: the one that does the work, and the statement."""
+    files = {form: [folder / f"{part}.lp" for part in parts] for form, folder in FORMS.items()}
+    return [form for form in FORMS if all(file.is_file() for file in files[form])]
+
+
+def answers(parts, facts, *arguments, encoding="work"):
     """The set of hypotheses, as tuples of (place, gateway) by step, that stock clingo
     finds; with a preference among the parts, the best ones. Fails on any message of
     clingo and on an answer given twice."""
@@ -81,13 +87,14 @@ def answers(parts, facts, *arguments, encoding="plain"):
     return set(costs(parts, facts, *arguments, encoding=encoding))
 
 
-def costs(parts, facts, *arguments, encoding="plain"):
+def costs(parts, facts, *arguments, encoding="work"):
     """The same with what each costs; with a preference, of all if a bound is an argument."""
     messages = []
     optimal = "--opt-mode=optN" in arguments
     options = ["0", *arguments]
     control = clingo.Control(options, logger=lambda _, text: messages.append(text))
-    for part in ("topomap", *parts):
+    marker = ["beyond/marker"] * (encoding == "paper" and "drop(" in facts)
+    for part in ("topomap", *marker, *parts):
         control.load(str(FORMS[encoding] / f"{part}.lp"))
     control.add("base", [], facts)
     control.ground([("base", [])])

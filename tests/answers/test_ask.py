@@ -19,7 +19,7 @@ from topomap.questions import ask, statements
 from topomap.questions.ask import Inquiry
 from topomap.runtime.errors import InputError
 from topomap.runtime.watch import Stopped, Watch
-from topomap.solver.programs import FORMS, forget
+from topomap.solver.programs import forget
 from topomap.solver.solving import hypotheses
 
 SIGNS = {
@@ -110,14 +110,13 @@ def test_answers_are_those_of_all_maps(cases):
         draw = random.Random(f"ask {cases} {number}")
         experience, truth = drawn(draw, number)
         texts, tests = zip(*(statement(draw, experience) for _ in range(12)), strict=True)
-        form, other = draw.sample([*FORMS], 2)
         parts = [part for part in PROPERTIES if draw.random() < 0.12]
         bound = draw.choice([None, None, None, 3, 5])
         maps = {at: truth.final[at] for at in truth.having(*parts, bound=bound)}
-        found = settled(experience, texts, Query(frozenset(parts), bound, None, form))
+        found = settled(experience, texts, Query(frozenset(parts), bound))
         demand(found, experience, tests, maps, [*parts, *([f"bound({bound})"] if bound else [])])
         best = truth.best(True) or truth.best(False)
-        found = settled(experience, texts, Query(encoding=other), optimal=True)
+        found = settled(experience, texts, ANY, optimal=True)
         demand(found, experience, tests, {at: truth.final[at] for at in best}, ["boundary"])
         assert found.kind == ("optimal" if truth.best(True) else "best so far")
 
@@ -136,13 +135,13 @@ def test_what_is_preferred_may_be_any_part(part):
         assert found.kind == "best"
 
 
-def consequences(form, parts, facts, mode):
+def consequences(parts, facts, mode):
     """What stock clingo shows of statements, by the call in the header of query.lp."""
     options = ["0", f"--enum-mode={mode}", *(["--opt-mode=optN"] if "minimal" in parts else [])]
     messages, shown = [], None
     control = clingo.Control(options, logger=lambda _, text: messages.append(text))
     for part in ("topomap", "query", *parts):
-        control.load(str(FORMS[form] / f"{part}.lp"))
+        control.load(str(ENCODINGS / f"{part}.lp"))
     control.add("base", [], facts)
     control.ground()
     with control.solve(yield_=True) as models:
@@ -156,15 +155,12 @@ def consequences(form, parts, facts, mode):
 def test_stock_clingo_says_the_same(cases):
     for number in range(cases):
         draw = random.Random(f"stock {number}")
-        form = draw.choice([*FORMS])
         experience, _ = drawn(draw, number)
         texts = [statement(draw, experience)[0] for _ in range(8)]
         parts = draw.choice([[], ["planar"], ["boundary", "minimal"], ["closed"]])
         answers = settled(experience, texts, Query(frozenset(parts)))
         facts = experience.facts() + "".join(a.statement.fact for a in answers.each)
-        certain, possible = (
-            consequences(form, parts, facts, mode) for mode in ("cautious", "brave")
-        )
+        certain, possible = (consequences(parts, facts, mode) for mode in ("cautious", "brave"))
         assert (certain is None) == (possible is None) == (not answers.some)
         for answer in answers.each if answers.some else ():
             term, positive = answer.statement.term, answer.statement.positive
@@ -173,12 +169,11 @@ def test_stock_clingo_says_the_same(cases):
             assert answer.holds == (known if positive else turned[known])
 
 
-@pytest.mark.parametrize("form", FORMS)
-def test_what_is_not_asked_is_not_grounded(form):
+def test_what_is_not_asked_is_not_grounded():
     def atoms(*files):
         control = clingo.Control()
         for file in ("topomap", *files):
-            control.load(str(FORMS[form] / f"{file}.lp"))
+            control.load(str(ENCODINGS / f"{file}.lp"))
         control.add("base", [], GRIDS["3x3-snake"].facts())
         control.ground()
         return {str(atom.symbol) for atom in control.symbolic_atoms}

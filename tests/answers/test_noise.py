@@ -62,7 +62,7 @@ def answered(seen: Experience, parts, most: int, mode: str):
 
 
 def driven(seen: Experience, parts, most: int):
-    query = Query(frozenset(parts), encoding="plain", noise=most)
+    query = Query(frozenset(parts), noise=most)
     found = [f for f in solving.hypotheses(seen, query, QUIET) if f.proved]
     answers = {(f.at, frozenset(f.misread)): f.cost for f in found}
     assert len(answers) == len(found)
@@ -89,7 +89,7 @@ def agree_with_brute_force(seen: Experience, most: int):
     least = min((cost[:2] for cost in open_too.values()), default=())  # before anything else
     closed = expected(ways, ("closed", "boundary", "minimal"))
     optimal = {key: cost for key, cost in closed.items() if cost[:2] == least} or open_too
-    query = Query(encoding="plain", noise=most)
+    query = Query(noise=most)
     found = [f for f in solving.best(seen, query, QUIET) if f.proved]
     assert {(f.at, frozenset(f.misread)): f.cost for f in found} == best(optimal)
     every = expected(ways, ())
@@ -141,7 +141,7 @@ def test_figures_are_of_what_is_there():
 def test_no_view_is_disbelieved_for_a_map_to_be_closed():
     """The one step leads to a place with a gateway more; without that, the map were closed."""
     seen = parse("slots(2). view(0,0). turn(1,0). view(1,0). view(1,1).", "seen")
-    found = list(solving.best(seen, Query(encoding="plain", noise=1), QUIET))
+    found = list(solving.best(seen, Query(noise=1), QUIET))
     assert [(f.kind, f.cost, f.misread) for f in found if f.proved] == [
         ("best so far", (0, 0, 1, 2), ())
     ]
@@ -235,7 +235,7 @@ def test_one_wrong_view_hides_every_map(size, step, misread):
     parts = frozenset(["closed", "boundary", "minimal", "planar"])
     if size == 4:
         parts |= {"perpendicular"}
-    query = Query(parts, encoding="plain", noise=1)
+    query = Query(parts, noise=1)
     found = [f for f in solving.hypotheses(seen, query, QUIET) if f.proved]
     assert [(f.at, f.misread) for f in found] == [(truth, tuple(misread))]
     assert found[0].cost[:2] == (1, len(misread))
@@ -245,7 +245,7 @@ def test_one_wrong_view_hides_every_map(size, step, misread):
 def test_two_wrong_views():
     true, truth = back_and_forth(3, RETRACED[3])
     seen = true.corrected([(13, 2), (18, 0)])
-    query = Query(frozenset(["closed", "boundary", "minimal", "planar"]), encoding="plain", noise=1)
+    query = Query(frozenset(["closed", "boundary", "minimal", "planar"]), noise=1)
     assert not list(solving.hypotheses(seen, query, QUIET))
     found = [f for f in solving.hypotheses(seen, replace(query, noise=2), QUIET) if f.proved]
     assert (truth, ((13, 2), (18, 0))) in [(f.at, f.misread) for f in found]
@@ -344,7 +344,15 @@ def test_what_is_refused_without_noise_is_a_misreading(topomap, tmp_path, facts)
 
 
 @pytest.mark.parametrize(
-    "option", ["--by=search", "--jobs=2", "--dask=tcp://127.0.0.1:1", "--resume", "--truth=none"]
+    "option",
+    [
+        "--by=search",
+        "--encoding=paper",
+        "--jobs=2",
+        "--dask=tcp://127.0.0.1:1",
+        "--resume",
+        "--truth=none",
+    ],
 )
 def test_what_does_not_go_with_noise_is_refused(topomap, tmp_path, option):
     out = tmp_path / "out"
@@ -353,9 +361,3 @@ def test_what_does_not_go_with_noise_is_refused(topomap, tmp_path, option):
     assert done.stderr.startswith("topomap solve: --noise does not go with --")
     assert done.stderr.count("\n") == 1
     assert not list(tmp_path.iterdir())
-
-
-def test_the_encoding_that_is_used_is_said(topomap):
-    call = "solve", MISREAD, "--noise", "1", "--closed", "--limit", "1"
-    assert topomap(*call).stderr == topomap(*call, "--encoding", "plain").stderr == ""
-    assert "the plain encoding is used" in topomap(*call, "--encoding", "fast").stderr

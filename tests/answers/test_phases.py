@@ -6,7 +6,7 @@ import random
 from itertools import combinations, combinations_with_replacement, pairwise
 
 import pytest
-from conftest import TRIED
+from conftest import ENCODINGS, TRIED
 from oracles import phase_answers as phased
 from oracles.worlds import WORLDS, random_world, with_marker
 from topomap.documents.check import by_definition
@@ -16,7 +16,7 @@ from topomap.model.topology import TopologicalMap
 from topomap.runtime.watch import Stopped, Watch
 from topomap.search import traversal
 from topomap.solver import phases, plane, solving
-from topomap.solver.programs import FORMS, Program
+from topomap.solver.programs import Program, forget
 from topomap.worlds.environment import grid, maze, world
 from topomap.worlds.instance import instance
 
@@ -135,32 +135,40 @@ def way_to_new(made: TopologicalMap, place, taken) -> int | None:
     return None
 
 
-def found(way, experience, parts, form="fast", horizon=None, places=None):
-    """The hypotheses of a query; of the least cost, if it minimises."""
-    query = Query(frozenset(parts), places, horizon, form)
-    if form == "fast":
-        assert phases.serve(experience, query)
+def found(way, experience, parts, phased=True, horizon=None, places=None):
+    """The hypotheses of a query, in phases or in one call; of the least cost, if it minimises."""
+    query = Query(frozenset(parts), places, horizon)
+    assert not phased or phases.serve(experience, query)
+    with pytest.MonkeyPatch.context() as patched:
+        if not phased:
+            forget()
+            patched.setattr(phases, "serve", lambda *_: False)
+        return listed(way, experience, query)
+
+
+def listed(way, experience, query):
     answers = [each.at for each in way(experience, query, QUIET) if each.proved]
     assert len(answers) == len(set(answers))
     return set(answers)
 
 
 def agree(experience, horizon=None, more=MORE, searched=True, places=None, common=SQUARE):
-    """Demand the same answers of the phases, of the plain encoding and of the search."""
+    """Demand the same answers of the phases, of a single call and of the search."""
     for parts in more:
         asked = experience, (*common, *parts)
-        plain = found(solving.hypotheses, *asked, "plain", horizon, places)
+        single = found(solving.hypotheses, *asked, False, horizon, places)
+        forget()
         TRIED["queries in phases"] += 1
-        TRIED["queries in phases that had an answer"] += bool(plain)
-        assert found(solving.hypotheses, *asked, "fast", horizon, places) == plain, (
+        TRIED["queries in phases that had an answer"] += bool(single)
+        assert found(solving.hypotheses, *asked, True, horizon, places) == single, (
             experience.facts(),
             parts,
             horizon,
             places,
         )
         if searched:
-            assert found(traversal.hypotheses, *asked, "plain", horizon, places) == plain
-    return plain
+            assert found(traversal.hypotheses, *asked, True, horizon, places) == single
+    return single
 
 
 def squared(draw, most):
@@ -208,7 +216,7 @@ BOUNDED = [(), ("planar",), ("perpendicular",), ("minimal",), ("boundary", "plan
 def agree_on_bounds(number, most):
     """Closed maps with the least number of places, the next one, and one place less."""
     experience, horizon = toured(random.Random(f"bounds {number}"), most, random_world)
-    maps = found(solving.hypotheses, experience, ("closed",), "plain", horizon)
+    maps = found(solving.hypotheses, experience, ("closed",), False, horizon)
     sizes = sorted({len({place for place, _ in at}) for at in maps})
     for places in {size - less for size in sizes[:2] for less in (0, 1)} or {3}:
         agree(experience, horizon, BOUNDED, False, places, ("closed",))
@@ -263,7 +271,7 @@ def test_lines(monkeypatch, tries):
 
 def planar_lines(experience):
     """The maps that lines.lp has with the clauses of planarity, and without, all listed."""
-    work = phases._Phases(experience.facts(), FORMS["fast"], lambda _: None)
+    work = phases._Phases(experience.facts(), ENCODINGS, lambda _: None)
     work.visits()
     answers = []
     for clauses in (True, False):
@@ -280,7 +288,7 @@ def refuses_what_is_not_planar(draw, most):
     """How many maps, at most, were refused: all that are not planar, and no other."""
     experience, _ = toured(draw, most, draw.choice([square_world, crossing_streets]))
     left, every = planar_lines(experience)
-    planar = found(solving.hypotheses, experience, (*SQUARE, "planar"), "plain")
+    planar = found(solving.hypotheses, experience, (*SQUARE, "planar"), False)
     assert left == {shown for _, shown in phased.lines(experience, planar)}, experience.facts()
     return len(every - left)
 
@@ -357,7 +365,7 @@ def test_named_worlds_in_every_way(name):
 
 def claims(experience, names):
     """What these phases find, and those that all begin with."""
-    work = phases._Phases(experience.facts(), FORMS["fast"], lambda _: None)
+    work = phases._Phases(experience.facts(), ENCODINGS, lambda _: None)
     for name in ("visits", *names):
         getattr(work, name)(*[experience] * (name == "beginnings"))
     return work._pairs, work._found
@@ -405,9 +413,9 @@ CHAINS = [
 def are_true(experience, chain):
     """Demand that what these phases find is true of every map for which it is said."""
     parts = {*SQUARE, *(["planar"] if "beginnings" in chain else [])}
-    maps = found(solving.hypotheses, experience, parts, "plain")
+    maps = found(solving.hypotheses, experience, parts, False)
     pairs, known = claims(experience, chain)
-    fits = {tuple(a.number for a in pair.arguments) for pair in pairs if pair.name == "fits"}
+    fits = {tuple(a.number for a in pair.arguments) for pair in pairs if pair.name == "comparable"}
     for at in maps:
         judge = Map(experience, at)
         for old, step in combinations_with_replacement(range(len(at)), 2):
@@ -447,7 +455,7 @@ def test_each_phase_finds_something():
     assert all(judge.accepts(f.name, *(a.number for a in f.arguments)) for f in known)
     assert {fact.name for fact in known} == {"never", "new", "old", "out", "apart"}
     assert {fact.arguments[2].number for fact in known if fact.name == "never"} == {0, 1}
-    assert {pair.name for pair in pairs} == {"fits", "iff"}
+    assert {pair.name for pair in pairs} == {"comparable", "iff"}
 
 
 def test_the_snake_of_6x6():
@@ -459,9 +467,9 @@ def test_the_snake_of_5x5_has_no_closed_map_of_fewer_places():
     """That is settled by the counting alone, and of the real map all is possible."""
     made = instance(grid(5, 5), "snake")
     for places in 24, 25:
-        work = phases._Phases(made.experience.facts(), FORMS["fast"], lambda _: None)
+        work = phases._Phases(made.experience.facts(), ENCODINGS, lambda _: None)
         work.visits()
-        possible = {pair for pair in work._pairs if pair.name == "fits"}
+        possible = {pair for pair in work._pairs if pair.name == "comparable"}
         work.bounded(places)
         judge = Map(made.experience, made.truth)
         numbers = [[a.number for a in fact.arguments] for fact in work._found]

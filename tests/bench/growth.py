@@ -12,7 +12,7 @@ OF_SEARCH = {"conflicts": "nodes"}  # what stands for a figure in the curves of 
 LEAST = {"rules": 1, "conflicts": 10, "nodes": 10, "seconds": 0.05}  # below it is no growth
 STYLES: dict[str, dict[str, Any]] = {
     "baseline": {"color": "#888888", "marker": "s", "markersize": 7, "markerfacecolor": "none"},
-    "fast": {"color": "#0055aa", "marker": "o", "markersize": 4},
+    "work": {"color": "#0055aa", "marker": "o", "markersize": 4},
     "search": {"color": "#cc5500", "marker": "D", "markersize": 4},
 }
 TITLES = {

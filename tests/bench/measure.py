@@ -32,7 +32,7 @@ class Wrong(Exception):
 
 @dataclass
 class Plan:
-    """How to measure: repetitions; seconds at most for the fast way, and for the others; MB
+    """How to measure: repetitions; seconds at most for our encodings, and for the others; MB
     at most; where the real maps and the baseline are; and the folder to work in."""
 
     repeat: int
@@ -45,7 +45,7 @@ class Plan:
     slow: dict[tuple[str, str], str] = field(default_factory=dict)  # way, series: a row's name
 
     def seconds(self, row: Row, way: str) -> float:
-        limit = self.limit if way == "fast" else self.others
+        limit = self.limit if way == "work" else self.others
         return min(limit, row.cut or limit)
 
 
@@ -59,19 +59,6 @@ def baseline(of: dict[str, str], folder: Path) -> str:
                 archive.extractall(folder, filter="data")
             return revision
     raise LookupError(done.stderr.decode().strip().partition("\n")[0])
-
-
-def same(one: Path, other: Path) -> bool:
-    """Whether two folders of encodings have the same rules, but for those in fast/."""
-    texts = [
-        {
-            path.relative_to(folder): path.read_bytes()
-            for path in folder.rglob("*.lp")
-            if "fast" not in path.relative_to(folder).parts
-        }
-        for folder in (one, other)
-    ]
-    return texts[0] == texts[1]
 
 
 def measured(row: Row, plan: Plan, ways: list[str]) -> dict[str, Any]:
@@ -95,7 +82,7 @@ def measured(row: Row, plan: Plan, ways: list[str]) -> dict[str, Any]:
     try:
         for repetition in range(plan.repeat):
             for way, own in runs.items():
-                if (way, row.series) in plan.slow and not (way == "fast" and row.goal):
+                if (way, row.series) in plan.slow and not (way == "work" and row.goal):
                     continue
                 spent = sum(run.get("seconds", ENOUGH) for run in own)
                 if not repetition or (spent < ENOUGH and "cut" not in own[-1]):
@@ -116,9 +103,9 @@ def measured(row: Row, plan: Plan, ways: list[str]) -> dict[str, Any]:
             result["verdict"] = "agreed" if len(numbers) > 1 else "one way" if numbers else "open"
     result["number"] = next(iter(numbers.values()), None)
     result["ratios"] = {
-        way: _ratio(runs[way], runs["fast"])
+        way: _ratio(runs[way], runs["work"])
         for way in runs
-        if way != "fast" and runs[way] and runs.get("fast")
+        if way != "work" and runs[way] and runs.get("work")
     }
     if not result["verdict"].startswith("WRONG"):
         result["goal met"] = {key: _met(key, most, result) for key, most in row.goal.items()}
@@ -199,26 +186,26 @@ def _medians(runs: list[dict[str, Any]]) -> dict[str, Any]:
     return {"number": runs[0]["number"], **figures, "runs": runs}
 
 
-def _ratio(runs: list[dict[str, Any]], fast: list[dict[str, Any]]) -> dict[str, Any] | None:
-    """How many times as long as the fast way a way takes: the median over the repetitions,
+def _ratio(runs: list[dict[str, Any]], ours: list[dict[str, Any]]) -> dict[str, Any] | None:
+    """How many times as long as our encodings a way takes: the median over the repetitions,
     exact or, where one of the two was cut by time, a bound."""
-    cuts = [any("cut" in run for run in own) for own in (runs, fast)]
-    if all(cuts) or any(run.get("cut") == "memory" for run in (*runs, *fast)):
+    cuts = [any("cut" in run for run in own) for own in (runs, ours)]
+    if all(cuts) or any(run.get("cut") == "memory" for run in (*runs, *ours)):
         return None
     times = [
         run.get("seconds", run.get("limit")) / other.get("seconds", other.get("limit"))
-        for run, other in zip(runs, fast, strict=False)
+        for run, other in zip(runs, ours, strict=False)
     ]
     return {"value": median(times), "is": ">" if cuts[0] else "<" if cuts[1] else "="}
 
 
 def _met(key: str, most: Any, result: dict[str, Any]) -> float | bool | None:
-    """A figure of the fast way by the goal, so that 1 or less is met; whether it is solved;
+    """A figure of our encodings by the goal, so that 1 or less is met; whether it is solved;
     None where it is not known."""
-    fast = result["ways"].get("fast", {})
+    ours = result["ways"].get("work", {})
     if key == "solved":
-        return "number" in fast
-    return fast[key] / most if key in fast and "cut" not in fast else None
+        return "number" in ours
+    return ours[key] / most if key in ours and "cut" not in ours else None
 
 
 def rows(chosen: list[Row], plan: Plan, ways: list[str]) -> Iterator[dict[str, Any]]:

@@ -17,16 +17,16 @@ lists the tasks.
 HOW = """
 Each measurement is a process of its own, on one core: Python, the package, and clingo with its
 default options, but for what `phases.py` asks of it. `baseline` is `encodings/` at the git
-revision `{revision}`, `plain` and `fast` are `encodings/` and `encodings/fast/` as they are now,
+revision `{revision}`, `work` is `encodings/` as it is now,
 `search` is the package's depth-first search, in Python; where it would not end without, it is
 told how many places the real map has.
-{plain}Figures of several programs are added up. Seconds are those from the facts to the last
+Figures of several programs are added up. Seconds are those from the facts to the last
 answer, without the start of Python; memory is the most that the process had{start}. In each
 repetition the ways take turns, so that ratios are of one run; figures are medians. A way is
-measured {repeat} times at most, again only while it took less than {enough:g} s so far. The fast
-way is cut after {limit:g} s, the others after {others:g} s, and at {memory:,} MB; growth rows
-have limits of their own. What was cut gives a bound; a way that was cut is not tried at the
-harder rows of the same kind, but for the fast one where there is a goal. A row counts only if
+measured {repeat} times at most, again only while it took less than {enough:g} s so far. Our
+encodings are cut after {limit:g} s, the others after {others:g} s, and at {memory:,} MB; growth
+rows have limits of their own. What was cut gives a bound; a way that was cut is not tried at the
+harder rows of the same kind, but for our encodings where there is a goal. A row counts only if
 each way that ended gave the expected answer: the number of maps, the real map among them where
 all are listed, none twice. Where one is wrong or the ways differ, it is WRONG, and has no
 figures.
@@ -58,7 +58,7 @@ def ended(of: dict[str, Any] | None, key: str = "seconds") -> str:
 
 
 def ratio(row: dict[str, Any], way: str) -> str:
-    """How many times as long as the fast way a way takes."""
+    """How many times as long as our encodings a way takes."""
     known = row.get("ratios", {}).get(way)
     if not known:
         return ""
@@ -118,13 +118,13 @@ def short(row: dict[str, Any]) -> str:
 
 def _results(rows: list[dict[str, Any]]) -> str:
     head = ["task", "maps", "rules", "choices", "conflicts", "s", "MB", "search s", "baseline s"]
-    head += ["search : fast", "baseline : fast", "goal"]
+    head += ["search : work", "baseline : work", "goal"]
     lines = []
     for row in rows:
-        fast = row["ways"].get("fast")
+        ours = row["ways"].get("work")
         keys = ("rules", "choices", "conflicts", "seconds", "memory")
         wrong = row["verdict"].startswith("WRONG")
-        figures = [*(ended(fast, key) for key in keys)]
+        figures = [*(ended(ours, key) for key in keys)]
         figures += [ended(row["ways"].get(way)) for way in ("search", "baseline")]
         figures += [ratio(row, way) for way in ("search", "baseline")]
         line = [row["name"], answer(row), *([""] * 9 if wrong else figures), goal(row)]
@@ -137,16 +137,16 @@ def _reference(rows: list[dict[str, Any]]) -> str:
     lines = []
     for row in rows:
         if row["name"] in others["rows"]:
-            fast = row["ways"].get("fast", {})
-            ours = ended(fast)
-            if fast.get("runs"):
+            ours = row["ways"].get("work", {})
+            ours = ended(ours)
+            if ours.get("runs"):
                 ours += " s"
-            if "rules" in fast:
-                ours += f", {number(fast['rules'])} rules, {number(fast['conflicts'])} conflicts"
+            if "rules" in ours:
+                ours += f", {number(ours['rules'])} rules, {number(ours['conflicts'])} conflicts"
             if row["verdict"].startswith(("WRONG", "skipped")):
                 ours = row["verdict"].partition(":")[0]
             lines.append([row["name"], *others["rows"][row["name"]], ours])
-    head = ["task", *others["columns"], "our fast way"]
+    head = ["task", *others["columns"], "our encodings"]
     return f"{others['source']}\n\n" + _table(head, lines, 5)
 
 
@@ -208,7 +208,6 @@ def _all(rows: list[dict[str, Any]]) -> str:
 def text(document: dict[str, Any], picture: str) -> str:
     """The whole report."""
     rows, machine = document["rows"], document["machine"]
-    plain = "" if document["ways"]["plain"] else "`plain` is the same as `baseline` now. "
     starts = [
         run["memory before"]
         for row in rows
@@ -217,7 +216,7 @@ def text(document: dict[str, Any], picture: str) -> str:
         if "memory before" in run
     ]
     start = f", of which Python and the package are {number(min(starts))} MB" if starts else ""
-    how = HOW.format(**document["plan"], revision=document["baseline"], plain=plain, start=start)
+    how = HOW.format(**document["plan"], revision=document["baseline"], start=start)
     how = "\n" + textwrap.fill(how, 98, break_on_hyphens=False) + "\n"
     parts = [
         HEAD,
@@ -228,7 +227,7 @@ def text(document: dict[str, Any], picture: str) -> str:
         ),
         how,
         *map(_again, document["again"]),
-        "## What the fast way takes\n",
+        "## What our encodings take\n",
         _results([row for row in rows if row["cut"] is None]),
         "## Beside a trial\n",
         _reference(rows),

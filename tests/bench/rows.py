@@ -8,7 +8,7 @@ from typing import Any
 
 ROOT = Path(__file__).resolve().parents[2]
 ROWS = Path(__file__).with_name("rows.toml")
-WAYS = ("baseline", "plain", "fast", "search")
+WAYS = ("baseline", "work", "search")
 KNOWN = {
     "ask": ("count", "maps", "one", "table", "command"),
     "ways": WAYS,

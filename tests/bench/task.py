@@ -127,7 +127,7 @@ def one_by_search(task: Task) -> int:
 
 def table_by_search(task: Task) -> int:
     differences = 0
-    for column, experience, query in _columns("plain"):
+    for column, experience, query in _columns("work"):
         tally = Tally(experience.steps)
         for node in traversal.depth_first(traversal.root(experience, query)):
             tally.add(node)
@@ -159,8 +159,7 @@ Way = Callable[[Task], int]
 CLINGO: dict[str, Way] = {"count": counted, "maps": listed, "one": one, "table": table}
 WAYS: dict[str, dict[str, Way]] = {
     "baseline": CLINGO,
-    "plain": CLINGO,
-    "fast": CLINGO | {"command": command},
+    "work": CLINGO | {"command": command},
     "search": {
         "count": counted_by_search,
         "maps": listed_by_search,
@@ -200,7 +199,7 @@ def main() -> None:
         about = {"steps": task.experience.steps, "kinds": len(set(seen)), "real places": real}
         places = real if given["places"] == "real" else given["places"]
         task.query = Query(frozenset(given["parts"]), places)
-    task.query = dataclasses.replace(task.query, encoding="fast" if way == "search" else way)
+    task.query = dataclasses.replace(task.query, encoding="work" if way == "search" else way)
     print(json.dumps(about), flush=True)
     if given["memory"]:
         resource.setrlimit(resource.RLIMIT_AS, (given["memory"] << 20, given["memory"] << 20))

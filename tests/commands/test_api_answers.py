@@ -82,7 +82,8 @@ def test_what_solve_refuses(seen):
         ({"by": "magic"}, "'magic' is not one of the ways clingo, search"),
         ({"encoding": "slow"}, "encoding='slow'"),
         ({"noise": 1, "by": "search"}, "noise does not go with"),
-        ({"noise": 1, "encoding": "fast"}, "with noise it is plain"),
+        ({"noise": 1, "encoding": "paper"}, "does not go with noise"),
+        ({"genus": True, "encoding": "paper"}, "does not state genus"),
         ({"limit": 0}, "limit=0"),
         ({"optimal": True, "jobs": 2}, "not the best ones"),
     ):

@@ -90,9 +90,9 @@ def in_a_thread(work):
         ([], {}),
         (["--optimal"], {"optimal": True}),
         (["--planar", "--horizon", "14"], {"planar": True, "horizon": 14}),
-        (["--minimal", "--encoding", "plain"], {"minimal": True, "encoding": "plain"}),
+        (["--minimal"], {"minimal": True}),
     ],
-    ids=["all", "optimal", "parts", "plain"],
+    ids=["all", "optimal", "parts", "best"],
 )
 def test_ask_is_the_command(told, seen, options, parts):
     statements = "same(3,12)", "places < 12", "not planar", "linked(3,2,12,0)"
@@ -132,8 +132,6 @@ def test_what_ask_refuses(seen):
         topomap.ask(seen(SNAKE), "planar", planer=True)
     with pytest.raises(ValueError, match="a statement is wanted"):
         topomap.ask(seen(SNAKE))
-    with pytest.raises(ValueError, match="encoding='slow'"):
-        topomap.ask(seen(SNAKE), "planar", encoding="slow")
     with pytest.raises(ValueError, match="bound=0"):
         topomap.ask(seen(SNAKE), "planar", bound=0)
     with pytest.raises(InputError, match="step 40: the experience has 16 steps"):

@@ -22,7 +22,7 @@ name = "endless {n}"
 each = [1, 2]
 generate = "grid 9 9 --route snake"
 ask = "count"
-ways = ["fast", "search"]
+ways = ["work", "search"]
 series = "endless"
 goals = { 1 = { solved = true } }
 """
@@ -30,7 +30,7 @@ goals = { 1 = { solved = true } }
 
 def row(**fields):
     """A row of a file of tasks."""
-    fields = {"generate": "grid 2 2 --route snake", "ask": "count", "ways": ["fast"]} | fields
+    fields = {"generate": "grid 2 2 --route snake", "ask": "count", "ways": ["work"]} | fields
     return "[[row]]\n" + "".join(f"{key} = {json.dumps(value)}\n" for key, value in fields.items())
 
 
@@ -64,7 +64,7 @@ def test_what_is_measured_is_written(bench, tmp_path):
     assert document["complete"]
     (only,) = document["rows"]
     assert (only["number"], only["expected"], only["verdict"]) == (88, 88, "right")
-    assert set(only["ways"]) | {"plain"} == set(rows.WAYS)
+    assert set(only["ways"]) == set(rows.WAYS)
     for way, of in only["ways"].items():
         assert of["number"] == 88
         assert of["seconds"] > 0
@@ -88,8 +88,8 @@ def test_a_wrong_number_has_no_speed(bench):
     )
     wrong, right = document["rows"]
     assert done.returncode == 1
-    assert wrong["verdict"] == f"WRONG: fast has {right['number']}, expected are 1,000"
-    assert "seconds" not in wrong["ways"]["fast"]
+    assert wrong["verdict"] == f"WRONG: work has {right['number']}, expected are 1,000"
+    assert "seconds" not in wrong["ways"]["work"]
     assert "1 wrong" in done.stdout
     line = next(line for line in text.splitlines() if line.startswith("| two | "))
     assert set(line.removeprefix(f"| two | **{wrong['verdict']}** |")) == {" ", "|"}
@@ -99,14 +99,14 @@ def test_the_real_map_must_be_among_the_answers(bench):
     task = row(name="ring", generate="torus 3 3 --route EEE", ask="maps")
     done, document, _ = bench(tasks=task)
     assert done.returncode == 1
-    assert document["rows"][0]["verdict"] == "WRONG: fast: the real map is not among them"
+    assert document["rows"][0]["verdict"] == "WRONG: work: the real map is not among them"
 
 
 def test_ways_that_differ_are_wrong(bench):
-    task = row(name="bound", ways=["fast", "search"], search={}) + "search = { places = 1 }\n"
+    task = row(name="bound", ways=["work", "search"], search={}) + "search = { places = 1 }\n"
     done, document, _ = bench(tasks=task.replace("search = {}\n", ""))
     assert done.returncode == 1
-    assert document["rows"][0]["verdict"].startswith("WRONG: the ways differ: {'fast': ")
+    assert document["rows"][0]["verdict"].startswith("WRONG: the ways differ: {'work': ")
 
 
 def test_a_map_that_is_not_there_is_skipped_and_a_way_that_fails_is_wrong(bench):
@@ -115,7 +115,7 @@ def test_a_map_that_is_not_there_is_skipped_and_a_way_that_fails_is_wrong(bench)
     assert done.returncode == 1
     skipped, failed = (row["verdict"] for row in document["rows"])
     assert skipped == "skipped: none.graphml is not there"
-    assert failed == "WRONG: fast failed, status 1"
+    assert failed == "WRONG: work failed, status 1"
     assert "none.lp: not found" in done.stderr
 
 
@@ -123,7 +123,7 @@ def test_the_time_limit_gives_a_floor(bench):
     done, document, text = bench("--limit", "0.5", "--others", "0.25", tasks=ENDLESS, report=True)
     assert done.returncode == 0
     first, second = document["rows"]
-    for way, limit in ("fast", 0.5), ("search", 0.25):
+    for way, limit in ("work", 0.5), ("search", 0.25):
         assert (first["ways"][way]["cut"], first["ways"][way]["limit"]) == ("time", limit)
         assert first["ways"][way]["memory"] > 10
         assert len(first["ways"][way]["runs"]) == 1
@@ -182,7 +182,7 @@ def test_a_ratio_with_a_run_that_was_cut_is_a_bound():
 
 
 def test_a_goal_is_missed_by_so_much():
-    ways = {"fast": {"rules": 30, "seconds": 2.0, "runs": []}}
+    ways = {"work": {"rules": 30, "seconds": 2.0, "runs": []}}
     wanted = {"rules": 20, "seconds": 4, "conflicts": 1}
     known = {"goal": wanted, "ways": ways}
     known["goal met"] = {key: measure._met(key, most, known) for key, most in wanted.items()}
@@ -194,10 +194,10 @@ def test_a_goal_is_missed_by_so_much():
 def test_exponents_are_fitted_to_what_grows():
     def measured(x, conflicts):
         way = {"rules": 3 * x**2, "conflicts": conflicts, "seconds": 0.01, "runs": [{}]}
-        return {"growth": "steps", "series": "s", "about": {"steps": x}, "ways": {"fast": way}}
+        return {"growth": "steps", "series": "s", "about": {"steps": x}, "ways": {"work": way}}
 
     cut = {"cut": "time", "limit": 9, "runs": [{}]}
-    last = {"growth": "steps", "series": "s", "about": {"steps": 80}, "ways": {"fast": cut}}
+    last = {"growth": "steps", "series": "s", "about": {"steps": 80}, "ways": {"work": cut}}
     found = growth.curves([*map(measured, (5, 10, 20, 40), (1, 10, 80, 640)), last])
     rules, conflicts, seconds = found
     assert [curve["figure"] for curve in found] == ["rules", "conflicts", "seconds"]
@@ -212,7 +212,7 @@ def test_exponents_are_fitted_to_what_grows():
 
 def test_the_picture_has_the_same_bytes_each_time(tmp_path):
     points = [(x, 2.0 * x**3) for x in (10, 20, 40)]
-    curve = {"series": "s", "x": "steps", "way": "fast", "points": points, "cut": [(80, 9)]}
+    curve = {"series": "s", "x": "steps", "way": "work", "points": points, "cut": [(80, 9)]}
     curve |= growth._fit(points, 1)
     found = [curve | {"figure": shown, "shown": shown} for shown in growth.SHOWN]
     for name in ("a.svg", "b.svg"):

@@ -68,8 +68,10 @@ class Assignment:
         return on and self.at[t][0] == self.at[u][0]
 
     def crossed(self, a, b):
-        return b in self.path(a) and any(
-            p == q and x != y for p, x in self.axes(a) for q, y in self.axes(b)
+        return (
+            a < b
+            and b in self.path(a)
+            and any(p == q and x != y for p, x in self.axes(a) for q, y in self.axes(b))
         )
 
     def circular(self, a):
@@ -78,7 +80,7 @@ class Assignment:
             (self.at[run - 1][0], (runs[run][run - 1] + self.half) % self.slots)
             for run in self.path(a)
         }
-        return a in runs and ends <= self.linked
+        return a in runs and a == min(self.path(a)) and ends <= self.linked
 
     def fresh(self, t):
         return not any(self.ways[t - 1][0] in way for way in self.ways[: t - 1])
@@ -152,4 +154,4 @@ def reasons(experience):
                 yield from (f"schema({t},{u})", f"unification({t},{u})")
     runs = Assignment(experience, tuple((t, 0) for t in steps)).runs()
     yield from (f"circular({a})" for a in runs)
-    yield from (f"crossed({a},{b})" for a in runs for b in runs)
+    yield from (f"crossed({a},{b})" for a in runs for b in runs if a < b)

@@ -6,12 +6,13 @@ load it.
 """
 
 import random
+import re
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from functools import cache, partial
 from itertools import combinations, product
 
-from conftest import ENCODINGS, PARTS, Truth
+from conftest import ENCODINGS, PARTS, Truth, forms
 from topomap.documents.check import STEP_RULES, by_definition, by_rules
 from topomap.model.experience import MARKER, Experience, observe
 from topomap.model.topology import TopologicalMap
@@ -300,9 +301,10 @@ def hypotheses(facts: str, arguments: tuple[str, ...], truth: Truth) -> Iterator
 
     def query(parts, found, *more, cost=lambda h: ()):
         answers = frozenset((cost(truth.final[at]), atoms(at)) for at in found)
-        for folder in FORMS.values():
-            under = folder.relative_to(ENCODINGS)
-            files = tuple(str(under / part) for part in ("topomap", *parts))
+        for form in forms(*parts):
+            marker = ("beyond/marker",) * (form == "paper" and "drop(" in facts)
+            under = FORMS[form].relative_to(ENCODINGS)
+            files = tuple(str(under / part) for part in ("topomap", *marker, *parts))
             yield Query(files, facts, answers, (*arguments, *more))
 
     def least(parts, cost, found):
@@ -317,7 +319,7 @@ def hypotheses(facts: str, arguments: tuple[str, ...], truth: Truth) -> Iterator
     def both(h):
         return (h.genus(), *h.cost())
 
-    # The plain ones are also to say what euler/1 and genus/1 are.
+    # What euler/1 and genus/1 are, too.
     figures = "#show euler/1. #show genus/1."
     answers = frozenset(
         ((), atoms(at) | {f"euler({h.euler()})", f"genus({h.genus()})"})
@@ -414,10 +416,10 @@ def phases() -> Iterator[Query]:
     experiences += WALKS
     experiences += [random_experience(random.Random(f"corpus {seed}"), 8) for seed in range(60)]
     for experience in experiences:
-        facts = experience.facts()
+        facts = experience.facts() + "phases. "
         draw = random.Random(facts)
         pairs = phase_answers.Pairs(experience)
-        yield Query(("fast/phases/visits",), facts, shown(*pairs.shown()))
+        yield Query(("phases/visits",), facts, shown(*pairs.shown()))
         facts += "".join(f"{atom}. " for atom in pairs.shown())
         truth = Truth(experience)
         yield left(facts, experience, truth, [])
@@ -439,7 +441,7 @@ def phases() -> Iterator[Query]:
             yield lines(facts, experience, truth, found)
             if (ways := phase_answers.runs(experience, found)) is not None:
                 answers = frozenset(((), way) for way in ways)
-                file = ("fast/phases/runs",)
+                file = ("phases/runs",)
                 yield Query(file, facts + phase_answers.text(found), answers, ("--project",))
 
 
@@ -449,15 +451,13 @@ def lines(facts: str, experience: Experience, truth: Truth, found: list) -> Quer
     squares = truth.having("closed", "perpendicular")
     maps = [at for at in squares if phase_answers.so(of_pairs, experience, at)]
     facts += phase_answers.text(found)
-    return Query(
-        ("fast/phases/lines",), facts, phase_answers.lines(experience, maps), ("--project",)
-    )
+    return Query(("phases/lines",), facts, phase_answers.lines(experience, maps), ("--project",))
 
 
 def squares() -> Iterator[Query]:
     """More of that."""
     for experience in SQUARES:
-        facts = experience.facts()
+        facts = experience.facts() + "phases. "
         facts += "".join(f"{atom}. " for atom in phase_answers.Pairs(experience).shown())
         yield lines(facts, experience, Truth(experience), [])
 
@@ -469,17 +469,17 @@ def left(facts: str, experience: Experience, truth: Truth, found: list, *parts: 
         for at in truth.having(*parts)
         if phase_answers.so(found, experience, at)
     )
-    files = tuple(f"fast/{name}" for name in ("phases/topomap", *parts))
+    files = ("phases/topomap", *parts)
     return Query(files, facts + phase_answers.text(found), answers)
 
 
 def ends() -> Iterator[Query]:
     """As many gateways as ends of links: that is to say, the closed maps."""
-    files = "fast/phases/topomap", "fast/phases/ends"
+    files = "phases/topomap", "phases/ends"
     draws = [random_experience(random.Random(f"ends {seed}"), 8) for seed in range(20)]
     for experience in [*(EXPERIENCES | WORLDS).values(), *draws]:
         truth = Truth(experience)
-        facts = experience.facts()
+        facts = experience.facts() + "phases. "
         facts += "".join(f"{atom}. " for atom in phase_answers.Pairs(experience).shown())
         asked = left(facts, experience, truth, [], "closed")
         yield replace(asked, files=files, arguments=("--eq=0",))
@@ -493,26 +493,27 @@ def begun(facts: str, experience: Experience, pairs: phase_answers.Pairs, horizo
         for at in Truth(experience.cut(horizon)).final
         if pairs.may.issuperset(phase_answers.same(at, experience.slots))
     )
-    return Query(("fast/phases/topomap",), facts, answers, ("-c", f"horizon={horizon}"))
+    return Query(("phases/topomap",), facts, answers, ("-c", f"horizon={horizon}"))
 
 
 def sizes() -> list[Query]:
-    """What the size of the fast encodings is taken by: each experience with all the parts, one
+    """What the size of the encodings is taken by: each experience with all the parts, one
     in five of what is asked of the phases, one in seven of what is asked step by step, and a
     large exploration of which it is known what visits are new."""
-    files = tuple(
-        f"fast/{part}" for part in ("topomap", "bound", "query", *PARTS, "genus", "minimal")
-    )
-    whole = [Query(files, seen.facts(), frozenset()) for seen in (EXPERIENCES | WORLDS).values()]
-    phases = [query for query in queries() if query.files[0].startswith("fast/phases/")]
+    files = ("topomap", "bound", "query", *PARTS, "genus", "minimal")
+    many = ("-c", "places=99")
+    whole = [
+        Query(files, seen.facts(), frozenset(), many) for seen in (EXPERIENCES | WORLDS).values()
+    ]
+    phases = [query for query in queries() if query.files[0].startswith("phases/")]
     made = grid(5, 5)
     route = [EAST, WEST] * 2 + snake(made)
     experience, truth = observe(made.map, ((0, 0), EAST), route)
     found = phase_answers.drawn(random.Random(0), experience, truth, 1)
     known = phase_answers.text(fact for fact in found if fact[0] in ("new", "old"))
     pairs = "".join(f"{atom}. " for atom in phase_answers.Pairs(experience).shown())
-    large = experience.facts() + pairs + known
-    plane = Query(("fast/phases/topomap", "fast/planar"), large, frozenset())
+    large = experience.facts() + "phases. " + pairs + known
+    plane = Query(("phases/topomap", "planar"), large, frozenset())
     return [*whole, *phases[::5], plane, *[*following()][::7]]
 
 
@@ -586,16 +587,14 @@ def _asked(draw: random.Random, experience: Experience, truth: Truth) -> Iterato
 def statements(
     experience: Experience, truth: Truth, tests: dict[str, Callable[[Hypothesis], bool]]
 ) -> Iterator[Query]:
-    """Statements, each with what it says of a hypothesis, asked of each form of the encodings."""
+    """Statements, each with what it says of a hypothesis, told of each hypothesis."""
     answers = set()
     for at, h in truth.final.items():
         atoms = {f"at({t},{p},{s})" for t, (p, s) in enumerate(at)}
         atoms |= {f"holds({term})" for term, test in tests.items() if test(h)}
         answers.add(((), frozenset(atoms)))
     facts = experience.facts() + "".join(f"ask({term})." for term in tests)
-    for folder in FORMS.values():
-        under = folder.relative_to(ENCODINGS)
-        yield Query((str(under / "topomap"), str(under / "query")), facts, frozenset(answers))
+    yield Query(("topomap", "query"), facts, frozenset(answers))
 
 
 def _so(test: Callable[..., bool], numbers: list[int], h: Hypothesis) -> bool:
@@ -706,13 +705,13 @@ def bare(among: list[Standing]) -> str:
     facts = f"slots({among[0].world.slots}). "
     for number, one in enumerate(among):
         for place, slot in one.world.gateways():
-            facts += f"gateway({number},{place},{slot}). "
+            facts += f"map_gateway({number},{place},{slot}). "
         for (place, slot), (other, at) in one.world.links.items():
-            facts += f"link({number},{place},{slot},{other},{at}). "
+            facts += f"map_link({number},{place},{slot},{other},{at}). "
         for place, terms in one.world.landmarks.items():
-            facts += "".join(f"sign({number},{place},{term}). " for term in terms)
-        facts += "stands({},{},{}). ".format(number, *one.dstate)
-        facts += f"lies({number},{one.marker}). " if one.marker is not None else ""
+            facts += "".join(f"map_sign({number},{place},{term}). " for term in terms)
+        facts += "map_stands({},{},{}). ".format(number, *one.dstate)
+        facts += f"map_marker({number},{one.marker}). " if one.marker is not None else ""
     return facts
 
 
@@ -767,8 +766,8 @@ def proved(facts: str, among: list[Standing], carried: bool, pairs: list | None)
             for place, slot in world.pending()
             if (side, place) in ends
         ]
-        atoms += [*opened, f"{'alike' if opened else 'bisimilar'}({i},{j})"]
-    facts += "".join(f"ask({i},{j}). " for i, j in pairs or ())
+        atoms += [*opened, f"{'alike_so_far' if opened else 'bisimilar'}({i},{j})"]
+    facts += "".join(f"compare({i},{j}). " for i, j in pairs or ())
     return Query(("bisimilar",), facts, shown(*atoms))
 
 
@@ -786,6 +785,7 @@ def following() -> Iterator[Query]:
     for number, experience in enumerate([*(EXPERIENCES | WORLDS).values(), *draws]):
         truth = Truth(experience)
         head, *lines = experience.facts().splitlines()
+        head = f"online. {head}"
         names, steps = list(range(len(lines))), tuple(lines)
         if number % 2:
             names, steps = astray(random.Random(f"astray {number}"), experience)
@@ -860,11 +860,42 @@ def together(slots, at, names):
         for t, (p, here) in enumerate(at[:u]):
             if p == q:
                 pair = f"{names[t]},{names[u]}"
-                found |= {f"one({pair})", f"same({pair},{(there - here) % slots})"}
+                found |= {f"together({pair})", f"one_place({pair},{(there - here) % slots})"}
     return frozenset(found)
 
 
+# What each file demands of the ones that it is loaded with.
+GUARD = re.compile(r"^:- not (topomap|paper|online|phases)\.", re.MULTILINE)
+
+
+def alone() -> Iterator[Query]:
+    """Parts without their entry, and what belongs to several calls in a single one: no answer.
+    That no message hides it, each predicate is said to be defined."""
+    texts = {
+        str(path.relative_to(ENCODINGS))[:-3]: path.read_text(encoding="utf-8")
+        for path in ENCODINGS.rglob("*.lp")
+    }
+    atoms = {
+        (name, number)
+        for name, number in re.findall(
+            r"^\| `(\w+)(\([^)]*\))?`", (ENCODINGS / "README.md").read_text(), re.MULTILINE
+        )
+    }
+    defined = " ".join(
+        f"#defined {name}/{number.count(',') + 1 if number else 0}." for name, number in atoms
+    )
+    entries = ("phases/topomap", "phases/visits", "phases/runs", "phases/lines", "online")
+    for file, text in sorted(texts.items()):
+        if GUARD.search(text) and file not in entries:
+            yield Query((file,), defined, frozenset(), ("-c", "places=3"))
+    yield Query(("paper/bound",), defined, frozenset(), ("-c", "places=3"))
+    pairs = "".join(f"{atom}. " for atom in phase_answers.Pairs(CORNERS).shown())
+    for entry in entries[:4]:
+        yield Query((entry,), f"{CORNERS.facts()} {pairs} {defined}", frozenset())
+
+
 SUITES = (
+    alone,
     theory,
     marker,
     given_up,

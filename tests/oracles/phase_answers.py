@@ -1,4 +1,4 @@
-"""What the programs of encodings/fast/phases/ are to answer, in Python: pairs of visits that
+"""What the programs of encodings/phases/ are to answer, in Python: pairs of visits that
 can be of one place, and which runs can lie on one path or cross in a closed and perpendicular
 map of four slots."""
 
@@ -52,13 +52,13 @@ class Pairs:
         )
 
     def shown(self) -> list[str]:
-        """fits/3, iff/6 and few/0."""
-        atoms = ["fits({},{},{})".format(*pair) for pair in self.may]
+        """comparable/3, iff/6 and runs_bind/0."""
+        atoms = ["comparable({},{},{})".format(*pair) for pair in self.may]
         crosses = {t for t, view in enumerate(self.experience.views) if {1, 2, 3} <= view}
         most = sorted(len(crosses & run.keys()) for run in self.runs.values())
         passing = [places for places in most if places]
         if len(passing) > 1 and sum(passing[-2:]) >= len(passing):
-            atoms.append("few")
+            atoms.append("runs_bind")
         return atoms + ["iff({},{},{},{},{},{})".format(*one, *two) for one, two in self.ways]
 
     def shared(self) -> set[tuple[int, int, int, int, int]]:
@@ -229,23 +229,23 @@ class _Runs:
     def shown(self, links) -> frozenset[str]:
         path = self.paths(links)
         grid = self.met(links, path, ("crossing",))
-        atoms = {f"through({a})" for a in self.through}
+        atoms = {f"passes_four({a})" for a in self.through}
         for a, b in combinations(self.runs, 2):
             atoms |= {f"joined({a},{b})"} if path[a] == path[b] else set()
-            atoms |= {f"grid({a},{b})"} if (path[a], path[b]) in grid else set()
+            atoms |= {f"cross_at_four({a},{b})"} if (path[a], path[b]) in grid else set()
         return frozenset(atoms)
 
 
 def lines(experience, maps) -> frozenset:
     """What lines.lp is to show of these hypotheses, the closed and perpendicular ones."""
     steps = range(experience.steps + 1)
-    here = {f"same({t},{t},0)" for t in steps}
+    here = {f"one_place({t},{t},0)" for t in steps}
     return frozenset(
         (
             (),
             frozenset(
                 here
-                | {"same({},{},{})".format(*pair) for pair in same(at, experience.slots)}
+                | {"one_place({},{},{})".format(*pair) for pair in same(at, experience.slots)}
                 | {f"new({t})" for t in steps if at[t][0] == t}
             ),
         )

@@ -47,14 +47,13 @@ Written by `make mutate`, with clingo {clingo} and Python {python}.
 A mutant is an encoding changed in one place: a statement removed; a literal of a body or of a
 condition dropped; one negated, or a comparison turned into its complement; a number made one
 greater or one less. Mutants that read the same are one. Each is asked the queries of
-`tests/oracles/known_answers.py` that load it, whose answers are known without the encodings: those
-in `fast/` the ones that load `fast/topomap.lp`, the others those that do not. It is *killed*
-when one gives other answers (other models, shown atoms or costs, or a model twice), *refused*
-when clingo has an error or a message for it, *endless* when a query takes more than {seconds}
-seconds of the processor or {memory} MiB of memory. (If the encoding without the change gives
-other answers too, the run ends with an error.) When all answers are right, a mutant of
-`fast/` or `online/`, whose worth is in its size, is *larger* if it grounds to more rules, over
-all named experiences with all the parts and some of what `fast/phases/` is asked. Another one is
+`tests/oracles/known_answers.py` that load it, whose answers are known without the encodings. It is
+*killed* when one gives other answers (other models, shown atoms or costs, or a model twice),
+*refused* when clingo has an error or a message for it, *endless* when a query takes more than
+{seconds} seconds of the processor or {memory} MiB of memory. (If the encoding without the change
+gives other answers too, the run ends with an error.) When all answers are right, a mutant of an
+encoding whose worth is in its size, too, is *larger* if it grounds to more rules, over all named
+experiences with all the parts and some of what `phases/` and `online/` are asked. Another one is
 *equivalent* if `tests/oracles/equivalent.toml` says why, and has *survived* if not. Comments,
 `#include` and `#heuristic`, which is but an order of the search, are not mutated.
 """
@@ -67,8 +66,6 @@ COMPLEMENT |= {other: one for one, other in COMPLEMENT.items()}
 
 
 INCLUDE = re.compile(r'^#include "(.+)\.lp"\.', re.MULTILINE)
-FAST = "fast/"
-LEAN = "fast/", "online/"  # what is there for its size too
 
 Trials = Callable[[list["Mutant"]], Iterator[tuple["Mutant", str]]]
 Key = tuple[str, str, str]  # the file, the rule and the change of a mutant
@@ -95,9 +92,8 @@ class Mutant:
 
 
 def named_files(folder: Path) -> list[str]:
-    """The encodings under a folder, the fast ones last."""
-    names = (str(path.relative_to(folder))[:-3] for path in folder.rglob("*.lp"))
-    return sorted(names, key=lambda file: (file.startswith(FAST), file))
+    """The encodings under a folder."""
+    return sorted(str(path.relative_to(folder))[:-3] for path in folder.rglob("*.lp"))
 
 
 def statements(folder: Path, file: str) -> list[ast.AST]:
@@ -130,12 +126,6 @@ def closure(folder: Path, files: tuple[str, ...]) -> tuple[str, ...]:
 def sets(folder: Path, asked: list[Query]) -> dict[tuple[str, ...], tuple[str, ...]]:
     """What is loaded by each set of files that a query names."""
     return {files: closure(folder, files) for files in dict.fromkeys(q.files for q in asked)}
-
-
-def tries(files: tuple[str, ...], loaded: tuple[str, ...], file: str) -> bool:
-    """Whether queries of these files are for trying this one: they load it, and are of its
-    form."""
-    return file in loaded and file.startswith(FAST) == files[0].startswith(FAST)
 
 
 def mutants(folder: Path, file: str) -> list[Mutant]:
@@ -286,8 +276,9 @@ def fates(
         return "\n".join(text for name in loaded[files] for text in texts[name])
 
     whole = {files: program(files) for files in loaded}
-    lean = any(mutant.file.startswith(LEAN) for mutant in chosen)
-    least = [(query, rules(whole[query.files], query)) for query in measured if lean]
+    lean = {file for query in measured for file in loaded[query.files]}
+    some = any(mutant.file in lean for mutant in chosen)
+    least = [(query, rules(whole[query.files], query)) for query in measured if some]
     waiting = list(reversed(chosen))
     running: dict[int, Mutant] = {}
     try:
@@ -303,11 +294,11 @@ def fates(
                     mutated = {
                         files: program(files)
                         for files, every in loaded.items()
-                        if tries(files, every, mutant.file)
+                        if mutant.file in every
                     }
                     mine = [query for query in asked if query.files in mutated]
                     fate = suffer(mutated, whole, mine)
-                    if fate == "survived" and mutant.file.startswith(LEAN):
+                    if fate == "survived" and mutant.file in lean:
                         signal.setitimer(signal.ITIMER_PROF, SECONDS * len(measured))
                         more = sum(
                             rules(mutated[query.files], query) - number
@@ -340,11 +331,11 @@ def marks(
     for file in {mutant.file for mutant in chosen}:
         told = []  # in any order, as queries of other files are mixed with these
         for files, every in loaded.items():
-            if tries(files, every, file):
+            if file in every:
                 texts = [list(map(str, statements(folder, name))) for name in every]
                 told.append(repr((files, texts)))
-        for query in asked + measured * file.startswith(LEAN):
-            if tries(query.files, loaded[query.files], file):
+        for query in asked + measured:
+            if file in loaded[query.files]:
                 answers = sorted((cost, sorted(atoms)) for cost, atoms in query.answers)
                 asked_for = query.files, query.facts, query.arguments, query.steps, query.parts
                 told.append(repr((*asked_for, answers)))
@@ -400,8 +391,9 @@ def report(fate: dict[Mutant, str], reasons: dict[Key, str]) -> str:
         return f"| {name} | {' | '.join(map(str, [*numbers, proved]))} |"
 
     rows = [row(f"`{file}.lp`", list(group)) for file, group in groupby(fate, lambda m: m.file)]
-    for name, fast in ("all but `fast/`", False), ("all of `fast/`", True):
-        rows.append(row(name, [mutant for mutant in fate if mutant.file.startswith(FAST) == fast]))
+    for name, stated in ("`paper/`", True), ("all but `paper/`", False):
+        group = [mutant for mutant in fate if mutant.file.startswith("paper/") == stated]
+        rows.append(row(name, group))
     lines = [
         HEAD.format(
             clingo=clingo.__version__,
@@ -466,7 +458,7 @@ def main(
         everyone = [mutant for file in names for mutant in mutants(folder, file)]
         loaded = sets(folder, asked()).items()
         for file in dict.fromkeys(mutant.file for mutant in everyone):
-            if not any(tries(files, every, file) for files, every in loaded):
+            if not any(file in every for _, every in loaded):
                 raise InputError(f"{file}: no query in tests/oracles/known_answers.py loads it")
         chosen = [mutant for mutant in everyone if mutant.file in (options.files or names)]
         if options.sample:

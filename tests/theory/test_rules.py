@@ -7,7 +7,7 @@ from clintest.assertion import SupersetOf
 from clintest.quantifier import Any
 from clintest.solver import Clingo
 from clintest.test import Assert
-from conftest import answers
+from conftest import answers, forms
 from oracles.known_answers import EXPERIENCES, seen
 from topomap.solver.programs import FORMS
 
@@ -18,7 +18,8 @@ def admits(form, parts, experience, at, *arguments):
     """Whether the hypothesis ``at``, written "place.gateway ...", is an answer."""
     dstates = [dstate.split(".") for dstate in at.split()]
     wanted = {f"at({step},{place},{slot})" for step, (place, slot) in enumerate(dstates)}
-    files = [str(FORMS[form] / f"{part}.lp") for part in ("topomap", *parts)]
+    marker = ["beyond/marker"] * (form == "paper" and bool(experience.drops))
+    files = [str(FORMS[form] / f"{part}.lp") for part in ("topomap", *marker, *parts)]
     test = Assert(Any(), SupersetOf(wanted))
     Clingo(["0", *arguments], experience.facts(), files).solve(test)
     return test.outcome().current_value()
@@ -62,6 +63,8 @@ but three may meet at a place    | perpendicular | star: 0.0 1.0 0.0 3.0 0.1 5.0
 @pytest.mark.parametrize("case", CASES.strip().splitlines())
 def test_rule_holds_and_bites(case, form):
     _, part, holds, bites = (field.strip() for field in case.split("|"))
+    if form not in forms(*[part] * bool(part)):
+        pytest.skip(f"the paper's statement does not have {part}.lp")
     parts, bound = [part] if part else [], ["-c", "places=3"] if part == "bound" else []
 
     def admitted(parts, case, *arguments):
@@ -81,16 +84,15 @@ def test_the_fewest_paths_and_places_are_preferred(form):
     assert answers(("minimal",), facts, encoding=form) == best
 
 
-@in_every_form
-def test_the_least_genus_is_preferred_to_the_fewest_paths(form):
+def test_the_least_genus_is_preferred_to_the_fewest_paths():
     """Of this experience, the one map with the fewest paths is not planar."""
     across = seen("0 1 3", "0: 0 1 3", "3: 0 1 2 3", "1: 0 1 2 3", "1: 0 2 3", "2: 0 1 2 3")
     across = replace(across, landmarks=tuple(map(frozenset, ["", "b", "a", "", "", "a"])))
     facts = across.facts()
-    (fewest,) = answers(("minimal",), facts, encoding=form)
-    planar = answers(("planar",), facts, encoding=form)
+    (fewest,) = answers(("minimal",), facts)
+    planar = answers(("planar",), facts)
     assert fewest not in planar
-    assert answers(("genus", "minimal"), facts, encoding=form) < planar
+    assert answers(("genus", "minimal"), facts) < planar
 
 
 @in_every_form

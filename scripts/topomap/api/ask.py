@@ -103,7 +103,6 @@ def ask(
     optimal: bool = False,
     bound: int | None = None,
     horizon: int | None = None,
-    encoding: str = "fast",
     timeout: float | None = None,
     **parts: Unpack[Parts],
 ) -> StatementAnswers:
@@ -118,7 +117,6 @@ def ask(
             there is none, of the best so far, pending gateways allowed.
         bound: the most places that a map may have.
         horizon: the last step that counts.
-        encoding: ``fast``, or ``plain``, the rules that state the theory.
         timeout: seconds after which it stops.
         parts: what the maps are to have.
 
@@ -127,11 +125,11 @@ def ask(
 
     Raises:
         TypeError: no experience, or a statement that is no text.
-        ValueError: no statement, an unknown part or encoding, or a number that cannot be.
+        ValueError: no statement, an unknown part, or a number that cannot be.
         InputError: an experience that cannot be, or a text that is no statement about it; one
             line.
     """
-    query = query_of(parts, bound=bound, horizon=horizon, encoding=encoding)
+    query = query_of(parts, bound=bound, horizon=horizon)
     if not statement:
         raise ValueError("ask: a statement is wanted, such as same(3,12)")
     for text in statement:

@@ -62,7 +62,6 @@ def count(
     *,
     bound: int | None = None,
     horizon: int | None = None,
-    encoding: str = "fast",
     timeout: float | None = None,
     jobs: int = 1,
     **parts: Unpack[Parts],
@@ -73,7 +72,6 @@ def count(
         experience: what was seen and done.
         bound: the most places that a map may have.
         horizon: the last step that counts.
-        encoding: ``fast``, or ``plain``, the rules that state the theory.
         timeout: seconds after which it stops.
         jobs: how many processes do the work.
         parts: what the maps are to have; not genus and minimal.
@@ -83,10 +81,10 @@ def count(
 
     Raises:
         TypeError: no experience.
-        ValueError: an unknown part or encoding, or a number that cannot be.
+        ValueError: an unknown part, or a number that cannot be.
         InputError: an experience that cannot be, one line that names step and fault.
     """
-    query = query_of(parts, bound=bound, horizon=horizon, encoding=encoding, allowed=DEMANDS)
+    query = query_of(parts, bound=bound, horizon=horizon, allowed=DEMANDS)
     jobs = whole("jobs", jobs, 1)
     watch = begin(experience, timeout)
     with crew_of(jobs) as crew:

@@ -9,7 +9,7 @@ from typing import Any, TypedDict
 from topomap.model.experience import Experience
 from topomap.model.facts import parse
 from topomap.model.query import Query
-from topomap.model.vocabulary import FORMS, PARTS
+from topomap.model.vocabulary import FORMS, PARTS, STATED
 from topomap.runtime.checks import flag, seconds, shown, whole_if_given
 from topomap.runtime.watch import Watch
 from topomap.worlds.environment import Environment, environment
@@ -47,19 +47,19 @@ def query_of(
     *,
     bound: int | None = None,
     horizon: int | None = None,
-    encoding: str | None = None,
+    encoding: str = "work",
     noise: int | None = None,
     allowed: Collection[str] = tuple(PARTS),
 ) -> Query:
     """The query that asks for the parts that are true. Raises ValueError, naming the known ones,
-    if one is not among those that are allowed, and if something else is not what it may be. The
-    encoding is the fast one where nothing else is said, and with ``noise`` the plain one."""
+    if one is not among those that are allowed, and if something else is not what it may be."""
     asked = frozenset(asked_of(parts, allowed))
-    encoding = encoding or ("fast" if noise is None else "plain")
     if encoding not in FORMS:
         raise ValueError(f"encoding={encoding!r}: it is {' or '.join(FORMS)}")
-    if noise is not None and encoding != "plain":
-        raise ValueError(f"encoding={encoding!r}: with noise it is plain")
+    if encoding == "paper" and (others := sorted(asked - STATED)):
+        raise ValueError(f"encoding='paper' does not state {', '.join(others)}")
+    if encoding == "paper" and noise is not None:
+        raise ValueError("encoding='paper' does not go with noise")
     return Query(
         asked,
         whole_if_given("bound", bound, 1),

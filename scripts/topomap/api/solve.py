@@ -24,7 +24,7 @@ def solve(
     horizon: int | None = None,
     noise: int | None = None,
     by: str = "clingo",
-    encoding: str | None = None,
+    encoding: str = "work",
     limit: int | None = None,
     timeout: float | None = None,
     jobs: int = 1,
@@ -38,9 +38,9 @@ def solve(
             there is none, the best so far, pending gateways allowed.
         bound: the most places that a map may have.
         horizon: the last step that counts.
-        noise: how many views may be wrong, as few as can be; by the plain encoding.
+        noise: how many views may be wrong, as few as can be.
         by: ``clingo``, or ``search``, the paper's own search.
-        encoding: ``fast``, or ``plain``, the rules that state the theory (with noise: plain).
+        encoding: ``work``, or ``paper``, the rules as the paper states them (slow).
         limit: stop after so many maps.
         timeout: seconds of search after which it stops: they begin with the first map that is
             asked for, and wait while the caller has control.

@@ -176,9 +176,9 @@ def add_encoding(command: Parser) -> None:
     command.add_argument(
         "--encoding",
         choices=FORMS,
-        default="fast",
-        help="which rules clingo gets: those of encodings/fast/, or the plain ones, which state "
-        "the theory (default: fast)",
+        default="work",
+        help="which rules clingo gets: those of encodings/, or those of encodings/paper/, which "
+        "state the theory as briefly as they can, and are slow (default: work)",
     )
 
 

@@ -3,7 +3,7 @@
 import argparse
 from typing import Any
 
-from topomap.cli.arguments import add_encoding, add_optimal, add_query, command
+from topomap.cli.arguments import add_optimal, add_query, command
 from topomap.cli.calls import asked_query
 from topomap.cli.tell import tell
 from topomap.model.vocabulary import PARTS, VOCABULARY
@@ -25,7 +25,6 @@ def add(group: Any) -> None:
     made.add_argument("statement", nargs="+", metavar="STATEMENT")
     add_optimal(made)
     add_query(made, PARTS)
-    add_encoding(made)
 
 
 def run(args: argparse.Namespace) -> int:

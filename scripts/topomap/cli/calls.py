@@ -4,7 +4,7 @@ import argparse
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
-from topomap.model.vocabulary import OPTIMIZING, PARTS
+from topomap.model.vocabulary import OPTIMIZING, PARTS, STATED
 from topomap.runtime.errors import InputError, say
 
 if TYPE_CHECKING:
@@ -15,8 +15,12 @@ if TYPE_CHECKING:
 
 
 def parts_of(args: argparse.Namespace, of: Iterable[str] = PARTS) -> dict[str, bool]:
-    """The parts that are asked for."""
-    return {part: True for part in of if getattr(args, part, False)}
+    """The parts that are asked for. Raises InputError if the encoding does not state one."""
+    parts = {part: True for part in of if getattr(args, part, False)}
+    others = [f"--{part}" for part in parts if part not in STATED]
+    if getattr(args, "encoding", None) == "paper" and others:
+        raise InputError(f"topomap {args.command}: --encoding paper does not state {others[0]}")
+    return parts
 
 
 def asked_query(args: argparse.Namespace, of: Iterable[str] = PARTS) -> "Query":
@@ -27,7 +31,7 @@ def asked_query(args: argparse.Namespace, of: Iterable[str] = PARTS) -> "Query":
         parts_of(args, of),
         bound=args.bound,
         horizon=getattr(args, "horizon", None),
-        encoding=getattr(args, "encoding", None),
+        encoding=getattr(args, "encoding", "work"),
         noise=getattr(args, "noise", None),
     )
 

@@ -3,7 +3,7 @@
 import argparse
 from typing import Any
 
-from topomap.cli.arguments import add_crew, add_encoding, add_query, add_resume, command
+from topomap.cli.arguments import add_crew, add_query, add_resume, command
 from topomap.cli.calls import asked_query, crew_of, run_of
 from topomap.cli.tell import tell
 from topomap.model.vocabulary import OPTIMIZING, PARTS
@@ -23,7 +23,6 @@ def add(group: Any) -> None:
     made.add_argument("instance", metavar="INSTANCE")
     add_query(made, [part for part in PARTS if part not in OPTIMIZING])
     add_crew(made)
-    add_encoding(made)
     add_resume(made)
 
 

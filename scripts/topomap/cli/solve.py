@@ -16,7 +16,7 @@ from topomap.cli.arguments import (
 from topomap.cli.calls import asked_query, crew_of, run_of
 from topomap.model.vocabulary import PARTS
 from topomap.runtime import formats
-from topomap.runtime.errors import InputError, say
+from topomap.runtime.errors import InputError
 from topomap.runtime.files import output
 from topomap.runtime.journal import Journal
 from topomap.runtime.status import INTERRUPT, exit_status
@@ -55,14 +55,13 @@ def add(group: Any) -> None:
     add_query(made, PARTS)
     add_crew(made, "; not with --optimal, --minimal or --genus")
     add_encoding(made)
-    made.set_defaults(encoding=None)  # settled when it is known whether there is --noise
     add_resume(made)
     made.add_argument(
         "--noise",
         type=number(int, 0),
         metavar="K",
         help="allow up to K views to be wrong, as few as possible: gateways and landmarks were "
-        "missed or imagined; this uses the plain encoding",
+        "missed or imagined",
     )
 
 
@@ -70,7 +69,7 @@ def run(args: argparse.Namespace) -> int:
     """Enumerate the maps of each instance."""
     from topomap.api.read import read
 
-    _with_noise(args)
+    _combined(args)
     inputs = []
     for path in args.instance:
         experience = read(path, args.noise is not None)
@@ -141,14 +140,14 @@ def _solve_one(
     return fault, bool(report.count)
 
 
-def _with_noise(args: argparse.Namespace) -> None:
-    """Choose the encoding. Raises InputError if misreadings are allowed and something is asked
-    for that cannot be combined with them."""
+def _combined(args: argparse.Namespace) -> None:
+    """Raises InputError if misreadings are allowed and something is asked for that cannot be
+    combined with them."""
     if args.noise is None:
-        args.encoding = args.encoding or "fast"
         return
     others = {
         "--by search": args.by == "search",
+        "--encoding paper": args.encoding == "paper",
         "--jobs": (args.jobs or 1) > 1,
         "--dask": args.dask,
         "--resume": args.resume,
@@ -157,6 +156,3 @@ def _with_noise(args: argparse.Namespace) -> None:
     for name, asked in others.items():
         if asked:
             raise InputError(f"topomap solve: --noise does not go with {name}")
-    if args.encoding == "fast":
-        say("topomap solve: --noise: the plain encoding is used, not the fast one")
-    args.encoding = "plain"

@@ -9,12 +9,12 @@ from topomap.model.vocabulary import OPTIMIZING
 class Query:
     """Which hypotheses are asked for: the parts of the theory that are to hold, the
     most places, and the last step that counts; the encoding that is to give them; and how many
-    views may be wrong, which goes with the plain encoding."""
+    views may be wrong."""
 
     parts: frozenset[str] = frozenset()
     places: int | None = None
     horizon: int | None = None
-    encoding: str = "fast"
+    encoding: str = "work"
     noise: int | None = None
 
     @property

@@ -15,7 +15,8 @@ OPTIMIZING = {"genus", "minimal"}
 PRUNING = ("planar", "perpendicular")  # what has them has had them after each step
 DEMANDS = tuple(part for part in PARTS if part not in OPTIMIZING)
 PROPERTIES = tuple(part for part in DEMANDS if part != "euler")  # which is another rule for planar
-FORMS = ("fast", "plain")  # of the encoding
+FORMS = ("work", "paper")  # of the encoding: the one that does the work, and the statement
+STATED = {"planar", "closed", "travelled", "boundary", "perpendicular", "minimal"}  # its parts
 
 # What each argument is: a step, or a slot counted clockwise of where the agent stood after
 # the step before it.

@@ -34,7 +34,6 @@ class Given:
         program.solve(())  # it grounds
         atoms = self.control.symbolic_atoms.by_signature("waived", 1)
         literals = {str(atom.symbol.arguments[0]): -atom.literal for atom in atoms}
-        literals = {name: literals[name] for name in literals if not doubled(name)}
         self.literals = {name: literals[name] for name in sorted(literals, key=rank)}
         self.conflicts = self.calls = 0
 
@@ -129,8 +128,7 @@ def verify(
         symbols = given.broken([other for other in names if other != name], name)
         if symbols is None:
             raise RuntimeError(f"{name} is no reason")
-        waived = {str(atom.arguments[0]) for atom in symbols if atom.name == "waived"}
-        broken = {reason for reason in waived if not doubled(reason)}
+        broken = {str(atom.arguments[0]) for atom in symbols if atom.name == "waived"}
         also = tuple(sorted(broken - {name}, key=rank))
         if name not in broken or set(also) & set(names):
             raise RuntimeError(f"{name} is not what it is about")
@@ -145,12 +143,6 @@ def kind_of(name: str) -> str:
 def numbers_of(name: str) -> tuple[int, ...]:
     inside = name.partition("(")[2].rstrip(")")
     return tuple(map(int, inside.split(","))) if inside else ()
-
-
-def doubled(name: str) -> bool:
-    """Whether a reason is the same as another one: that two paths cross, told from both."""
-    numbers = numbers_of(name)
-    return kind_of(name) == "crossed" and numbers[0] > numbers[1]
 
 
 def rank(name: str) -> tuple[int, tuple[int, ...]]:

@@ -259,7 +259,7 @@ class Explainer:
         self.found.horizon = steps
         experience = self.experience.cut(steps)
         parts = ("explain",) if goal is None else ("explain", "query")
-        query = replace(query, encoding="plain").having(*parts)
+        query = query.having(*parts)
         facts = self.fact * (goal is not None)
         self.watch.title(f"reasons in {steps} steps")
         assumed = self._assumed(goal)

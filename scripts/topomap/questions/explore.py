@@ -263,7 +263,7 @@ class _Planner:
         """Why no walk tells these pairs apart, by ``bisimilar.lp``; each proof is checked."""
         numbers = sorted({number for pair in pairs for number in pair})
         text = facts((number, self.among[number]) for number in numbers)
-        text += "".join(f"ask({one},{other}). " for one, other in pairs)
+        text += "".join(f"compare({one},{other}). " for one, other in pairs)
         text += "carried." * self.marker
         places = {number: list(self.among[number].world.stars) for number in numbers}
         related: dict[tuple[int, int], list[bisimulation.Pair]] = {pair: [] for pair in pairs}

@@ -109,18 +109,20 @@ def facts(maps: Iterable[tuple[int, Standing]]) -> str:
         if not lines:
             lines.append(f"slots({world.slots}).")
         index = {place: count for count, place in enumerate(world.stars)}
-        lines += [f"gateway({number},{index[place]},{slot})." for place, slot in world.gateways()]
         lines += [
-            f"link({number},{index[a[0]]},{a[1]},{index[b[0]]},{b[1]})."
+            f"map_gateway({number},{index[place]},{slot})." for place, slot in world.gateways()
+        ]
+        lines += [
+            f"map_link({number},{index[a[0]]},{a[1]},{index[b[0]]},{b[1]})."
             for a, b in world.links.items()
         ]
         lines += [
-            f"sign({number},{index[place]},{term})."
+            f"map_sign({number},{index[place]},{term})."
             for place in world.stars
             for term in sorted(world.landmarks.get(place, ()))
         ]
         place, slot = standing.dstate
-        lines.append(f"stands({number},{index[place]},{slot}).")
+        lines.append(f"map_stands({number},{index[place]},{slot}).")
         if standing.marker is not None:
-            lines.append(f"lies({number},{index[standing.marker]}).")
+            lines.append(f"map_marker({number},{index[standing.marker]}).")
     return "\n".join(lines) + "\n"

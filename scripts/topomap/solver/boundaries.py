@@ -18,14 +18,14 @@ class Followed(Protocol):
 
 
 class Boundaries(clingo.Propagator):
-    """Refuses, where ``bounded`` holds, maps in which a place is left and right of a path, or
+    """Refuses, where ``consistent`` holds, maps in which a place is left and right of a path, or
     on it and beside it (semantics: "Boundary consistency"), by the steps that make it so. As
     links are added this stays so; a clause holds for all steps to come."""
 
     def __init__(self, follower: Followed):
         self._of = follower
         self._at: list[list[tuple[int, int, int]]] = []  # by steps: place, slot, literal
-        self._bounded = 0
+        self._asked = 0
 
     def init(self, init: clingo.PropagateInit) -> None:
         """Learn the literals of ``at/3``."""
@@ -36,21 +36,21 @@ class Boundaries(clingo.Propagator):
             if visit in step:
                 literal = init.solver_literal(atom.literal)
                 self._at[step[visit]].append((place, slot, literal))
-        bounded = init.symbolic_atoms[clingo.Function("bounded")]
-        self._bounded = init.solver_literal(bounded.literal) if bounded else -1
+        asked = init.symbolic_atoms[clingo.Function("consistent")]
+        self._asked = init.solver_literal(asked.literal) if asked else -1
         init.check_mode = clingo.PropagatorCheckMode.Total
 
     def check(self, control: clingo.PropagateControl) -> None:
         """Forbid what is wrong with the map that was found."""
         true = control.assignment.is_true
-        if not true(self._bounded):
+        if not true(self._asked):
             return
         where = [next(one for one in of if true(one[2])) for of in self._at]
         at = [(place, slot) for place, slot, _ in where]
         seen = self._of.experience
         for steps in crossed(seen.slots, seen.turns, at):
             visits = {visit for step in steps for visit in (step - 1, step)}
-            nogood = [self._bounded, *(where[visit][2] for visit in sorted(visits))]
+            nogood = [self._asked, *(where[visit][2] for visit in sorted(visits))]
             if not control.add_nogood(nogood):
                 return
 

@@ -87,7 +87,7 @@ class OnlineSolver:
         self._control.load(str(ENCODINGS / "online/certain.lp"))
         self._boundaries = Boundaries(self)
         self._control.register_propagator(self._boundaries)
-        self._control.add("base", [], f"slots({slots}). #external bounded.")
+        self._control.add("base", [], f"online. slots({slots}). #external consistent.")
         self.visits: list[int] = []  # the number of each step in the program
         self._numbered = 0
         self._level: list[tuple[int, ...]] = [(0,)]  # the hypotheses after some step
@@ -240,11 +240,11 @@ class OnlineSolver:
                 return len(found) <= MAPS
 
             self._configure("auto", "optN")
-            self._control.assign_external(_atom("bounded"), True)
+            self._control.assign_external(_atom("consistent"), True)
             try:
                 self._solve(watch, assumed, take)
             finally:
-                self._control.assign_external(_atom("bounded"), False)
+                self._control.assign_external(_atom("consistent"), False)
             if found:
                 return kind, tuple(cost), sorted(found)
         return None, (), []
@@ -268,9 +268,9 @@ class OnlineSolver:
                 continue
             if atom.name == "new":
                 new.add(step[numbers[0]])
-            elif atom.name == "one":
+            elif atom.name == "together":
                 same.add((step[numbers[0]], step[numbers[1]]))
-            elif atom.name == "same":
+            elif atom.name == "one_place":
                 here, there = step[numbers[0]], step[numbers[1]]
                 first[there] = min(first.get(there, (here, numbers[2])), (here, numbers[2]))
         return Certain(frozenset(same), frozenset(new), frozenset(self._linked(first)))

@@ -3,7 +3,7 @@ one grounds over what is left.
 
 All that is found, but for ``rare``, holds in every map that is asked for, so the answers stay
 the same: each program asks for less than they must have. (Of the marker those know nothing that
-do not load the theory.) ``encodings/fast/phases/`` has the programs:
+do not load the theory.) ``encodings/phases/`` has the programs:
 
 1. ``visits.lp``: which visits can be of one place, by pairs; settled while grounding.
 2. for closed maps with at most so many places: the theory without planarity, but with
@@ -81,7 +81,7 @@ def found(
 ) -> str:
     """Facts for ``phases/topomap.lp`` that hold in every map which the query asks for.
 
-    ``folder`` has the fast encodings; ``heed`` is called between two calls of clingo. The
+    ``folder`` has the encodings; ``heed`` is called between two calls of clingo. The
     controls that it is given may be interrupted; what is found is then less, and as true.
     ``say`` is told what is done.
     """
@@ -111,13 +111,13 @@ def found(
 class _Phases:
     def __init__(self, facts: str, folder: Path, heed: Heed):
         self._facts, self._folder, self._heed = facts, folder, heed
-        self._pairs: list[Symbol] = []  # fits/3 and iff/6
+        self._pairs: list[Symbol] = []  # comparable/3 and iff/6
         self._found: list[Symbol] = []
 
     def facts(self) -> str:
         """All that was found."""
         found = [Function("found", [symbol]) for symbol in self._found]
-        return "".join(f"{symbol}.\n" for symbol in [*self._pairs, *found])
+        return "phases.\n" + "".join(f"{symbol}.\n" for symbol in [*self._pairs, *found])
 
     def _grounded(self, *files: str, arguments: Iterable[str] = ()) -> clingo.Control:
         control = clingo.Control([*arguments])
@@ -136,16 +136,16 @@ class _Phases:
         with control.solve(yield_=True) as models:
             for model in models:
                 shown = model.symbols(shown=True)
-        few = Function("few")
+        few = Function("runs_bind")
         self._pairs = [symbol for symbol in shown if symbol != few]
         return few in shown
 
     def runs(self) -> None:
         control = self._grounded("phases/runs")
         atoms = control.symbolic_atoms
-        through = sorted(atom.symbol.arguments[0] for atom in atoms.by_signature("through", 1))
+        through = sorted(atom.symbol.arguments[0] for atom in atoms.by_signature("passes_four", 1))
         pairs = [(a, b) for a in through for b in through if a < b]
-        for number, relation in enumerate(("joined", "grid")):
+        for number, relation in enumerate(("joined", "cross_at_four")):
             for asked in self._refuted(control, [Function(relation, pair) for pair in pairs]):
                 self._know("never", *asked.arguments, Number(number))
 
@@ -214,11 +214,11 @@ class _Phases:
         control = self._grounded("phases/lines", arguments=options)
         if planarity:
             control.register_propagator(planarity)
-        unseen, settled = self._unseen(control, TRY_HARD, ("same", 3), ("new", 1))
+        unseen, settled = self._unseen(control, TRY_HARD, ("one_place", 3), ("new", 1))
         for atom in unseen:
             if settled:
-                self._know({"same": "apart", "new": "old"}[atom.name], *atom.arguments)
-            elif atom.name == "same":
+                self._know({"one_place": "apart", "new": "old"}[atom.name], *atom.arguments)
+            elif atom.name == "one_place":
                 self._know("rare", *atom.arguments)
             else:
                 self._know("rare", *atom.arguments * 2, Number(0))

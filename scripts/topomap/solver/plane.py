@@ -5,9 +5,9 @@ has so far is not planar, this looks for two short circuits of it that cross an 
 times, and forbids what they rest on:
 
 - a circuit goes by links, so by steps; where it changes from one step to another, the two are
-  at one place: ``same(P,T,S)`` holds;
+  at one place: ``one_place(P,T,S)`` holds;
 - where the two circuits cross, so do the visits that they share there;
-- they cross nowhere else: no ``same(P,T,S)`` holds that would make them.
+- they cross nowhere else: no ``one_place(P,T,S)`` holds that would make them.
 
 Each such clause holds in every planar map, whatever else is seen. Not each map that is not
 planar is refused, for only short circuits are looked at: what is left, ``planar.lp`` refuses.
@@ -42,11 +42,11 @@ class Planarity(clingo.Propagator):
         self._fixpoints = 0
 
     def init(self, init: clingo.PropagateInit) -> None:
-        """Learn the steps, and the literals of ``same/3``."""
+        """Learn the steps, and the literals of ``one_place/3``."""
         atoms = init.symbolic_atoms
         moves = sorted(_numbers(atom) for atom in atoms.by_signature("move", 2))
         self._move += [slot for _, slot in moves]
-        for atom in atoms.by_signature("same", 3):
+        for atom in atoms.by_signature("one_place", 3):
             visit, later, slot = _numbers(atom)
             if visit < later:
                 literal = init.solver_literal(atom.literal)

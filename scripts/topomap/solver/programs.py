@@ -17,7 +17,7 @@ from topomap.runtime.watch import MEMORY, Stopped, Watch
 from topomap.solver import phases
 from topomap.solver.threads import Put, in_thread, prepare
 
-FORMS = {"fast": ENCODINGS / "fast", "plain": ENCODINGS}
+FORMS = {"work": ENCODINGS, "paper": ENCODINGS / "paper"}
 Answer = TypeVar("Answer")
 
 
@@ -52,8 +52,12 @@ class Program:
     def __init__(self, experience: Experience, query: Query, facts: str = ""):
         self.asked = experience, query
         self.facts = facts
-        self._phased = query.encoding == "fast" and phases.serve(experience, query)
-        how = phases.program(experience, query) if self._phased else ()
+        self._phased = query.encoding == "work" and phases.serve(experience, query)
+        how: tuple[Sequence[str], ...] = ()
+        if self._phased:
+            how = phases.program(experience, query)
+        elif query.encoding == "paper" and experience.drops:
+            how = (["topomap", "beyond/marker"],)
         self.control = control(query, experience.facts() + facts, *how)
         self._grounded = self._interrupted = False
         self._solved = self.control  # now or next
@@ -68,7 +72,7 @@ class Program:
         """Solve it, with the hypotheses that begin with a cube as the only ones."""
         if not self._grounded:
             if self._phased:
-                facts = phases.found(*self.asked, FORMS["fast"], self._heed, self.say)
+                facts = phases.found(*self.asked, ENCODINGS, self._heed, self.say)
                 self._heed(self.control)
                 self.say("")
                 self.control.add("base", [], facts)
