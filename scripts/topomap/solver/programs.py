@@ -60,6 +60,7 @@ class Program:
             how = (["topomap", "beyond/marker"],)
         self.control = control(query, experience.facts() + facts, *how)
         self._grounded = self._interrupted = False
+        self.changed = False  # whether rules were added by which it has fewer answers
         self._solved = self.control  # now or next
         self.say: Callable[[str], None] = lambda _: None
 
@@ -95,7 +96,7 @@ class Program:
 
     def keep(self) -> None:
         """Have it at hand, with what it has learnt, if this thread asks for it again."""
-        if not self.asked[1].optimizes:
+        if not (self.asked[1].optimizes or self.changed):
             _last.program = self
 
     def models(self) -> tuple[int, tuple[float, ...]]:
