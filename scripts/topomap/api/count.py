@@ -9,22 +9,30 @@ from topomap.model.query import Query
 from topomap.model.reply import Reply
 from topomap.model.vocabulary import DEMANDS
 from topomap.paper import statistics
-from topomap.runtime.checks import whole
+from topomap.runtime.checks import flag, whole
 from topomap.runtime.journal import Journal
 from topomap.runtime.watch import Attempt, Watch
 from topomap.solver.crews import crew as crew_of
 from topomap.solver.share import Crew
 
-Figure = int | list[int] | None
+Figure = int | list[int] | str | None
 Number = Literal[
-    "nodes", "maps_built", "final", "closed", "closed_text", "optimal", "perpendicular"
+    "nodes",
+    "maps_built",
+    "final",
+    "closed",
+    "closed_text",
+    "optimal",
+    "perpendicular",
+    "circumscribed",
 ]
 
 
 class Counts(Reply, Mapping[str, Figure]):
     """The figures of a search tree, by name: ``per_step`` (hypotheses after each step, from 0),
     ``nodes``, ``maps_built``, ``final``, ``closed``, ``closed_text``, ``optimal``,
-    ``perpendicular``. What was not counted is None."""
+    ``perpendicular``; if they were asked for, ``circumscribed`` and ``circumscribed_kind``. What was
+    not counted is None."""
 
     def __init__(self, figures: Mapping[str, Any], fault: str | None):
         super().__init__(fault)
@@ -62,6 +70,7 @@ def count(
     *,
     bound: int | None = None,
     horizon: int | None = None,
+    circumscribe: bool = False,
     timeout: float | None = None,
     jobs: int = 1,
     **parts: Unpack[Parts],
@@ -72,6 +81,8 @@ def count(
         experience: what was seen and done.
         bound: the most places that a map may have.
         horizon: the last step that counts.
+        circumscribe: count the circumscribed maps, too, as ``solve`` gives them: the figure
+            ``circumscribed``, and ``circumscribed_kind``, which says of what kind they are.
         timeout: seconds after which it stops.
         jobs: how many processes do the work.
         parts: what the maps are to have; not genus and minimal.
@@ -85,18 +96,24 @@ def count(
         InputError: an experience that cannot be, one line that names step and fault.
     """
     query = query_of(parts, bound=bound, horizon=horizon, allowed=DEMANDS)
+    circumscribe = flag("circumscribe", circumscribe)
     jobs = whole("jobs", jobs, 1)
     watch = begin(experience, timeout)
     with crew_of(jobs) as crew:
-        return count_under(watch, experience, query, Journal(), crew)
+        return count_under(watch, experience, query, Journal(), crew, circumscribe)
 
 
 def count_under(
-    watch: Watch, experience: Experience, query: Query, journal: Journal, crew: Crew
+    watch: Watch,
+    experience: Experience,
+    query: Query,
+    journal: Journal,
+    crew: Crew,
+    circumscribe: bool = False,
 ) -> Counts:
     """The same of the maps of a query, under the watch of a command, which has a journal of the
     work and a crew for it."""
     figures: dict[str, Any] = {}
     with Attempt() as attempt:
-        statistics.tree(experience, query, watch, journal, figures, crew)
+        statistics.tree(experience, query, watch, journal, figures, crew, circumscribe)
     return Counts(figures, attempt.fault)

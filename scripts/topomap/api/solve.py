@@ -8,6 +8,7 @@ from topomap.api.parts import Parts, begin, query_of
 from topomap.model.experience import Experience
 from topomap.model.found import Found
 from topomap.model.query import Query
+from topomap.model.vocabulary import OPTIMIZING
 from topomap.runtime.checks import flag, seconds, whole, whole_if_given
 from topomap.runtime.journal import Journal
 from topomap.runtime.watch import Deadline, Watch
@@ -20,6 +21,7 @@ def solve(
     experience: Experience,
     *,
     optimal: bool = False,
+    circumscribe: bool = False,
     bound: int | None = None,
     horizon: int | None = None,
     noise: int | None = None,
@@ -36,6 +38,9 @@ def solve(
         experience: what was seen and done.
         optimal: closed maps with consistent boundaries, fewest paths, then fewest places; if
             there is none, the best so far, pending gateways allowed.
+        circumscribe: the same preference by set inclusion: maps that no other map is preferred
+            to, which has but a part of the paths, or the same paths and but a part of the places
+            (the paper, section II: the circumscription policy).
         bound: the most places that a map may have.
         horizon: the last step that counts.
         noise: how many views may be wrong, as few as can be.
@@ -44,7 +49,7 @@ def solve(
         limit: stop after so many maps.
         timeout: seconds of search after which it stops: they begin with the first map that is
             asked for, and wait while the caller has control.
-        jobs: how many processes do the work; not with what minimises.
+        jobs: how many processes do the work; not with what minimises or circumscribes.
         parts: what the maps are to have.
 
     Returns:
@@ -61,7 +66,17 @@ def solve(
         raise ValueError(f"{by!r} is not one of the ways {', '.join(WAYS)}")
     limit, jobs = whole_if_given("limit", limit, 1), whole("jobs", jobs, 1)
     timeout = seconds("timeout", timeout)
-    if (flag("optimal", optimal) or query.optimizes) and jobs > 1:
+    if flag("circumscribe", circumscribe):
+        others = {
+            "optimal": optimal,
+            "genus or minimal": query.parts & OPTIMIZING,
+            "noise": noise is not None,
+            "encoding='paper'": encoding == "paper",
+        }
+        for name, asked in others.items():
+            if asked:
+                raise ValueError(f"circumscribe does not go with {name}")
+    if (flag("optimal", optimal) or circumscribe or query.optimizes) and jobs > 1:
         raise ValueError("jobs: all maps are shared out, not the best ones")
     if noise is not None and by == "search":
         raise ValueError("noise does not go with by='search'")
@@ -70,7 +85,7 @@ def solve(
     def coming() -> Generator[Found, None, None]:
         watch.deadline = Deadline(timeout)
         with crew_of(jobs) as crew:
-            yield from every(experience, query, watch, by, optimal, None, crew)
+            yield from every(experience, query, watch, by, optimal, None, crew, circumscribe)
 
     return Answer(experience, query, coming(), limit, watch)
 
@@ -82,11 +97,12 @@ def solve_under(
     *,
     by: str = "clingo",
     optimal: bool = False,
+    circumscribe: bool = False,
     limit: int | None = None,
     journal: Journal | None = None,
     crew: Crew = ALONE,
 ) -> Answer:
     """The same of the maps of a query, under the watch of a command, which may have a journal of
     the work and a crew for it."""
-    coming = every(experience, query, watch, by, optimal, journal, crew)
+    coming = every(experience, query, watch, by, optimal, journal, crew, circumscribe)
     return Answer(experience, query, coming, limit)

@@ -172,6 +172,16 @@ def add_optimal(command: Parser) -> None:
     )
 
 
+def add_circumscribe(command: Parser) -> None:
+    command.add_argument(
+        "--circumscribe",
+        action="store_true",
+        help="the same preference by set inclusion, as circumscription has it: maps that no other "
+        "map is preferred to, which has some of their paths and no others, or the same paths and "
+        "some of their places and no others",
+    )
+
+
 def add_encoding(command: Parser) -> None:
     command.add_argument(
         "--encoding",

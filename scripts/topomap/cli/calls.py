@@ -41,7 +41,8 @@ def crew_of(args: argparse.Namespace) -> "Crew":
     from topomap.solver.crews import crew
 
     shared = (args.jobs or 1) > 1 or args.dask
-    if shared and (getattr(args, "optimal", False) or OPTIMIZING & set(parts_of(args))):
+    some = any(getattr(args, name, False) for name in ("optimal", "circumscribe"))
+    if shared and args.command == "solve" and (some or OPTIMIZING & set(parts_of(args))):
         raise InputError("topomap solve: --jobs and --dask are for all maps, not the best ones")
     return crew(args.jobs or 1, args.dask)
 
@@ -52,7 +53,7 @@ def run_of(args: argparse.Namespace, *experiences: "Experience") -> dict[str, An
         return {}
     from topomap.solver.solving import digest
 
-    keys = ("by", "encoding", *PARTS, "optimal", "bound", "horizon")
+    keys = ("by", "encoding", *PARTS, "optimal", "circumscribe", "bound", "horizon")
     asked = {key: getattr(args, key, None) for key in keys}
     return {"command": args.command, **asked, "facts and encodings": digest(*experiences)}
 

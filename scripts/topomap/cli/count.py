@@ -3,7 +3,7 @@
 import argparse
 from typing import Any
 
-from topomap.cli.arguments import add_crew, add_query, add_resume, command
+from topomap.cli.arguments import add_circumscribe, add_crew, add_query, add_resume, command
 from topomap.cli.calls import asked_query, crew_of, run_of
 from topomap.cli.tell import tell
 from topomap.model.vocabulary import OPTIMIZING, PARTS
@@ -18,10 +18,12 @@ def add(group: Any) -> None:
         "count",
         """\
   topomap count instances/grid-4x4-snake.lp --planar --bound 16
-  topomap count instances/grid-4x4-snake.lp --jobs 2""",
+  topomap count instances/grid-4x4-snake.lp --jobs 2
+  topomap count instances/grid-3x4-paper.lp --circumscribe""",
     )
     made.add_argument("instance", metavar="INSTANCE")
     add_query(made, [part for part in PARTS if part not in OPTIMIZING])
+    add_circumscribe(made)
     add_crew(made)
     add_resume(made)
 
@@ -39,7 +41,9 @@ def run(args: argparse.Namespace) -> int:
         output(args.output) as out,
     ):
         with heeding(args.timeout) as watch:
-            counts = count_under(watch, experience, asked_query(args), journal, crew)
+            counts = count_under(
+                watch, experience, asked_query(args), journal, crew, args.circumscribe
+            )
         status = tell(args, out, counts, bool(counts["final"]), args.instance)
         journal.complete = counts.complete
     return status

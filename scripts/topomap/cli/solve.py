@@ -5,6 +5,7 @@ import json
 from typing import IO, TYPE_CHECKING, Any
 
 from topomap.cli.arguments import (
+    add_circumscribe,
     add_crew,
     add_encoding,
     add_optimal,
@@ -35,11 +36,13 @@ def add(group: Any) -> None:
         """\
   topomap solve instances/grid-3x3-snake.lp --planar --closed
   topomap solve instances/grid-3x4-paper.lp --optimal --json
+  topomap solve instances/grid-4x4-snake.lp --circumscribe --planar
   topomap solve instances/grid-4x4-snake.lp --bound 16 --jobs 2 -o maps.txt
   topomap solve instances/grid-3x3-misread.lp --optimal --planar --noise 1""",
     )
     made.add_argument("instance", nargs="+", metavar="INSTANCE")
     add_optimal(made)
+    add_circumscribe(made)
     made.add_argument("--limit", type=number(int, 1), metavar="N", help="stop after N maps")
     made.add_argument(
         "--truth",
@@ -53,7 +56,7 @@ def add(group: Any) -> None:
         help="how to find the maps: clingo, or the search in Python (default: %(default)s)",
     )
     add_query(made, PARTS)
-    add_crew(made, "; not with --optimal, --minimal or --genus")
+    add_crew(made, "; not with --optimal, --circumscribe, --minimal or --genus")
     add_encoding(made)
     add_resume(made)
     made.add_argument(
@@ -126,11 +129,12 @@ def _solve_one(
             asked_query(args),
             by=args.by,
             optimal=args.optimal,
+            circumscribe=args.circumscribe,
             limit=args.limit,
             journal=journal,
             crew=crew,
         )
-        kind = "optimal" if args.optimal else None
+        kind = "optimal" if args.optimal else "circumscribed" if args.circumscribe else None
         report = Report(out, path, experience, answer.query, kind, truth, args.json)
         with Attempt() as attempt:
             for one in answer.stream():
@@ -141,8 +145,19 @@ def _solve_one(
 
 
 def _combined(args: argparse.Namespace) -> None:
-    """Raises InputError if misreadings are allowed and something is asked for that cannot be
+    """Raises InputError if a preference or misreadings are asked for together with what cannot be
     combined with them."""
+    if args.circumscribe:
+        others = {
+            "--optimal": args.optimal,
+            "--minimal": args.minimal,
+            "--genus": args.genus,
+            "--noise": args.noise is not None,
+            "--encoding paper": args.encoding == "paper",
+        }
+        for name, asked in others.items():
+            if asked:
+                raise InputError(f"topomap solve: --circumscribe does not go with {name}")
     if args.noise is None:
         return
     others = {

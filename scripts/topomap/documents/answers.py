@@ -83,6 +83,8 @@ class Report:
                 "horizon": query.horizon,
                 "optimal": kind == "optimal",
             }
+            if kind == "circumscribed":
+                head["circumscribe"] = True
             if query.noise is not None:
                 head["noise"] = query.noise
             out.write(json.dumps(formats.headed(head))[:-1] + ', "maps": [')

@@ -14,6 +14,7 @@ from topomap.runtime.journal import Journal
 from topomap.runtime.watch import Watch
 from topomap.search import traversal
 from topomap.search.hypothesis import Hypothesis
+from topomap.solver.circumscription import circumscribed
 from topomap.solver.share import ALONE, Crew
 from topomap.solver.solving import count, demand_cover
 
@@ -27,6 +28,7 @@ WORDS = {
     "closed_text": "  (closed: no gateway pending)",
     "optimal": "Optimal final maps",
     "perpendicular": "Closed and perpendicular maps",
+    "circumscribed": "Circumscribed final maps",
 }
 FINAL = {
     "closed": ("travelled",),
@@ -43,6 +45,7 @@ def tree(
     journal: Journal,
     result: dict[str, Any],
     crew: Crew = ALONE,
+    circumscribe: bool = False,
 ) -> None:
     """Fill in ``result``, by clingo alone (semantics: "What Figure 4 counts"):
 
@@ -50,7 +53,7 @@ def tree(
     ``maps_built``: those whose last step added a link, and the root; ``final``: those after the
     last step; of these ``closed``: every path holds two places, as the table counts it;
     ``closed_text``: no pending gateway; ``optimal``; ``perpendicular``: closed and
-    qualitatively perpendicular. What the time limit cuts off stays None.
+    qualitatively perpendicular; if asked for, ``circumscribed``, and of which kind. What the time limit cuts off stays None.
 
     A node of the tree at depth t is an answer set with ``-c horizon=t``. Large levels are
     counted cube by cube, each a unit of the journal.
@@ -76,6 +79,8 @@ def tree(
         return int(result["per_step"][-1])
 
     result.update(dict.fromkeys(KEYS), per_step=[])
+    if circumscribe:
+        result.update(circumscribed=None, circumscribed_kind=None)
     monotone = query.parts <= set(PRUNING)
     last = experience.steps if query.horizon is None else min(query.horizon, experience.steps)
     branches: list[Cube] = [()]
@@ -108,6 +113,12 @@ def tree(
     for key in asked:
         watch.title(f"{key} maps")
         result[key] = sum(total for total, _ in islice(pairs, len(cubes_of[key])))
+    if circumscribe:
+        watch.title("circumscribed maps")
+        kind, many = None, 0
+        for found in circumscribed(experience, query, watch):
+            kind, many = found.kind, many + 1
+        result.update(circumscribed=many, circumscribed_kind=kind)
 
 
 def final_maps(experience: Experience, query: Query, watch: Watch, crew: Crew) -> int:
@@ -233,9 +244,12 @@ def figures_text(figures: Mapping[str, Any], fault: str | None) -> str:
     told, more = (least, "at least ") if least else (figures, "")
     steps = " ".join(map(str, told["per_step"])) or "not counted"
     lines = [f"hypotheses after each step: {more}{steps}"]
-    for key in KEYS:
+    asked = ("circumscribed",) if "circumscribed" in figures else ()
+    for key in (*KEYS, *asked):
         known = "not counted" if told.get(key) is None else f"{more}{told[key]:,}"
         lines.append(f"{WORDS[key]:<42}{known:>12}")
+    if (kind := figures.get("circumscribed_kind")) and kind != "circumscribed":
+        lines.append(f"the circumscribed maps are {kind}: none is closed")
     if fault:
         lines.append(f"partial: {fault}")
     return "\n".join(lines) + "\n"

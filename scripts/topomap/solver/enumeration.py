@@ -14,6 +14,7 @@ from topomap.runtime.limits import LARGEST
 from topomap.runtime.watch import Attempt, Stopped, Watch
 from topomap.search import traversal
 from topomap.solver import solving
+from topomap.solver.circumscription import circumscribed
 from topomap.solver.share import ALONE, Crew
 from topomap.solver.solving import Way
 
@@ -28,13 +29,16 @@ def every(
     optimal: bool = False,
     journal: Journal | None = None,
     crew: Crew = ALONE,
+    circumscribe: bool = False,
 ) -> Generator[Found, None, None]:
     """The maps of a query, or the best of them if ``optimal`` (better and better ones come
-    before those that are proved); ``by`` is one of WAYS. If there is a journal or a crew, and
-    nothing is minimised, branch by branch of the tree. Raises Stopped."""
+    before those that are proved), or the circumscribed ones; ``by`` is one of WAYS. If there is a
+    journal or a crew, and all maps are asked for, branch by branch of the tree. Raises Stopped."""
     journal = journal or Journal()
     way = WAYS[by]
-    if optimal:
+    if circumscribe:
+        yield from circumscribed(experience, query, watch, by)
+    elif optimal:
         yield from filter(None, solving.best(experience, query, watch, way))
     elif query.optimizes or (crew is ALONE and not journal.kept):
         yield from filter(None, way(experience, query, watch))
