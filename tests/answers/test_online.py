@@ -229,7 +229,7 @@ def test_stock_clingo_drives_it():
         options = ["0", "--project", "--opt-mode=ignore", "-c", "places=9"]
         control = clingo.Control(options, logger=lambda _, text, to=messages: to.append(text))
         control.load(str(ENCODINGS / "online.lp"))
-        control.add("base", [], " ".join([head, *(lines if at_once else [])]))
+        control.add("base", [], " ".join(["online.", head, *(lines if at_once else [])]))
         control.ground([("base", [])])
         for step, line in enumerate(lines):
             control.add(f"facts{step}", [], "" if at_once else line)
