@@ -136,6 +136,20 @@ class Hypothesis:
     def cost(self):
         return len(self.paths()), len(self.stars)
 
+    def names(self):
+        """The paths, each by the first step along it, or by its place and lower slot there, and
+        the places: what circumscription compares (semantics: circumscription)."""
+        paths = set()
+        for path in self.paths():
+            ends = {(p, s % (self.slots // 2)) for p, s in path}
+            steps = [
+                t
+                for t in range(1, len(self.at))
+                if (self.leaves(t)[0], self.leaves(t)[1] % (self.slots // 2)) in ends
+            ]
+            paths.add(("first", steps[0]) if steps else ("axis", *min(ends)))
+        return frozenset(paths), frozenset(self.stars)
+
 
 def marked(marker, at):
     """Whether after the last step the marker is seen if it is where the agent is, and not
@@ -192,6 +206,16 @@ def best(experience, hypotheses, closed=True):
     maps = [m for m in maps if m.boundary() and (m.closed() or not closed)]
     least = min((m.cost() for m in maps), default=None)
     return {m.at for m in maps if m.cost() == least}
+
+
+def circumscribed(maps):
+    """Those maps that none of them is preferred to: each is compared with each."""
+    names = {m.at: m.names() for m in maps}
+
+    def preferred(one, other):
+        return one[0] < other[0] or (one[0] == other[0] and one[1] < other[1])
+
+    return {at for at in names if not any(preferred(other, names[at]) for other in names.values())}
 
 
 def certain(hypotheses):

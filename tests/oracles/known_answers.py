@@ -339,6 +339,58 @@ def hypotheses(facts: str, arguments: tuple[str, ...], truth: Truth) -> Iterator
     yield from least(("genus", "minimal"), both, truth.final)
 
 
+def circumscription() -> Iterator[Query]:
+    """The names of the paths and places of each map; one map is given, and those are asked for that
+    are preferred to it, or have the same paths and places; or it was passed."""
+    draws = [random_experience(random.Random(f"circumscribe {seed}"), 8) for seed in range(40)]
+    for experience in [*(EXPERIENCES | WORLDS).values(), *draws]:
+        truth = Truth(experience)
+        draw = random.Random(experience.facts())
+        names = {at: h.names() for at, h in truth.final.items()}
+        if not 1 < len(names) < 100:
+            continue
+        atoms = {
+            at: [f"path,{kind}({','.join(map(str, n))})" for kind, *n in paths]
+            + [f"place,{place}" for place in places]
+            for at, (paths, places) in names.items()
+        }
+
+        def asked(facts, test, *steps, experience=experience, names=names, atoms=atoms):
+            answers = frozenset(
+                (
+                    (),
+                    frozenset(f"at({t},{p},{s})" for t, (p, s) in enumerate(at))
+                    | {f"has({name})" for name in atoms[at]},
+                )
+                for at, mine in names.items()
+                if test(*mine)
+            )
+            facts = experience.facts() + facts
+            return Query(("topomap", "circumscribe"), facts, answers, (), steps, ("passed",))
+
+        yield asked("", lambda paths, places: True)
+        for at in draw.sample(sorted(names), min(4, len(names))):
+            its, there = names[at]
+            given = "".join(f"given({name})." for name in atoms[at])
+            yield asked(
+                f"prefer. {given}",
+                lambda paths, places, its=its, there=there: (
+                    paths < its or (paths == its and places < there)
+                ),
+            )
+            yield asked(
+                f"repeat. {given}",
+                lambda paths, places, its=its, there=there: (paths, places) == (its, there),
+            )
+            yield asked(
+                "",
+                lambda paths, places, its=its, there=there: (
+                    not (paths > its or (paths == its and places >= there))
+                ),
+                "".join(f"passed(7,{name})." for name in atoms[at]),
+            )
+
+
 def misread() -> Iterator[Query]:
     """Experiences with wrong views, with what brute force says of them."""
     drawn = [(corrupted(random.Random(f"misread {seed}"), 3), 1) for seed in range(16)]
@@ -900,6 +952,7 @@ SUITES = (
     marker,
     given_up,
     misread,
+    circumscription,
     phases,
     squares,
     ends,

@@ -231,7 +231,7 @@ def go(control: clingo.Control, number: int, step: str, parts: tuple[str, ...]) 
         control.release_external(clingo.Function("active", [clingo.Number(int(step))]))
         return
     control.add(f"facts{number}", [], step)
-    visits = re.findall(r"view\((\d+),", step)
+    visits = re.findall(r"(?:view|passed)\((\d+),", step)
     mine = [(part, [clingo.Number(int(visits[0]))]) for part in parts if visits]
     control.ground([(f"facts{number}", []), *mine])
 
