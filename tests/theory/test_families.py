@@ -7,6 +7,7 @@ from pathlib import Path
 import clingo
 import pytest
 from conftest import ENCODINGS, PARTS, ROOT, Truth
+from oracles.brute_force import Hypothesis
 from oracles.rule_mutation import named_files
 from topomap.model.facts import read
 from topomap.model.vocabulary import STATED
@@ -20,7 +21,7 @@ OF_ENTRY = {
 FOR_PROGRAMS = ["phases/topomap", "phases/visits", "phases/runs", "phases/lines", "online"]
 ENTRIES = [*OF_ENTRY, *FOR_PROGRAMS]
 ALONE = ("input", "check", "explore", "unseen", "bisimilar")  # programs of their own
-INCLUDED = ("theory/", "explore/")
+INCLUDED = ("theory/", "explore/", "paper/path_axiom")
 EVERY_PART = [
     file
     for file in named_files(ENCODINGS)
@@ -105,3 +106,110 @@ def test_the_statement_refuses_a_marker_that_it_does_not_know():
     with_it = tried(["paper/topomap", "paper/beyond/marker"], FACTS + "drop(0).")
     assert with_it == tried(["topomap"], FACTS + "drop(0).")
     assert with_it[0] > 0
+
+
+@pytest.mark.parametrize("horizon", [(), ("-c", "horizon=16")])
+@pytest.mark.parametrize("other", [entry for entry in ENTRIES if entry != "topomap"])
+def test_two_entries_are_not_loaded_together(other, horizon):
+    try:
+        found, messages = tried(["topomap", other], FACTS, *horizon)
+    except RuntimeError:  # what clingo's Python has for a constant of two values
+        return
+    assert found == 0
+    assert any("does not occur in any rule head" in message for message in messages)
+
+
+@pytest.mark.parametrize("entry", ["topomap", "paper/topomap"])
+def test_half_an_instance_has_no_map(entry):
+    found, messages = tried([entry], "slots(4).")
+    assert found == 0
+    assert any("view(" in message for message in messages)
+
+
+@pytest.mark.parametrize("more", [(), ("explain",), ("noise",)])
+def test_a_bound_without_a_number_has_no_map(more):
+    found, messages = tried(["topomap", "bound", *more], FACTS)
+    assert found == 0
+    assert any("operation undefined" in message for message in messages)
+
+
+def test_the_statement_says_that_it_does_not_know_a_marker():
+    facts = FACTS + "drop(0)."
+    found, messages = tried(["paper/topomap"], facts)
+    assert found == 0
+    assert any("with_marker" in message for message in messages)
+    truth = Truth(read(ROOT / "instances/grid-3x3-snake.lp").cut(16))
+    assert len(truth.final) == tried(["paper/topomap", "paper/beyond/marker"], FACTS)[0]
+    assert (
+        tried(["paper/topomap", "paper/beyond/marker"], facts)
+        == tried(["topomap"], facts)
+        != (0, [])
+    )
+
+
+def without_axiom(entry, *parts):
+    """A program without the path axiom: the line of its entry that includes it is taken out."""
+    lines = []
+    for line in (ENCODINGS / f"{entry}.lp").read_text().splitlines():
+        if line.startswith("#include") and "path_axiom" not in line:
+            folder = (ENCODINGS / entry).parent
+            line = line.replace('"', f'"{folder}/', 1)
+        lines.append(line * ("path_axiom" not in line))
+    parts = [f'#include "{ENCODINGS / part}.lp".' for part in parts]
+    return "\n".join([*lines, *parts])
+
+
+def maps_without_axiom(entry, *parts, facts=FACTS, online=()):
+    messages = []
+    options = ["0", "--project", "--opt-mode=ignore"]
+    control = clingo.Control(options, logger=lambda _, text: messages.append(text))
+    control.add("base", [], without_axiom(entry, *parts) + facts)
+    control.ground()
+    for step in range(len(online)):
+        number = [clingo.Number(step)]
+        control.add(f"facts{step}", [], online[step])
+        control.ground([(f"facts{step}", []), ("step", number)])
+    found = []
+
+    def read(model):
+        at = sorted([a.number for a in s.arguments] for s in model.symbols(shown=True))
+        found.append(tuple((place, slot) for _, place, slot in at))
+
+    control.solve(on_model=read)
+    assert not messages
+    return found
+
+
+# The numbers of ../shared/semantics.md, "Without the path axiom".
+@pytest.mark.parametrize(
+    ("parts", "number"),
+    [
+        ((), 129),
+        (("planar",), 97),
+        (("closed",), 6),
+        (("closed", "planar"), 5),
+        (("closed", "perpendicular"), 2),
+        (("closed", "perpendicular", "planar"), 1),
+    ],
+)
+@pytest.mark.parametrize("entry", ["topomap", "paper/topomap"])
+def test_the_path_axiom_can_be_taken_away(entry, parts, number):
+    folder = "" if entry == "topomap" else "paper/"
+    assert len(maps_without_axiom(entry, *(folder + part for part in parts))) == number
+
+
+def test_the_path_axiom_can_be_taken_away_step_by_step():
+    head, *steps = FACTS.splitlines()
+    found = maps_without_axiom("online", facts=f"online. {head}", online=steps)
+    assert len(found) == 129
+
+
+def test_perpendicular_maps_without_the_axiom():
+    """One path may cross itself."""
+    views = " ".join(f"view({step},(0;1;2;3))." for step in range(4))
+    facts = f"slots(4). {views} turn(1,3). turn(2,3). turn(3,3)."
+    experience = (4, [{0, 1, 2, 3}] * 4, [None, 3, 3, 3], [frozenset()] * 4, set())
+    every = maps_without_axiom("topomap", facts=facts)
+    kept = {at for at in every if Hypothesis(experience, at).perpendicular()}
+    assert set(maps_without_axiom("topomap", "perpendicular", facts=facts)) == kept
+    assert any(Hypothesis(experience, at).breaks_path_axiom() for at in kept)
