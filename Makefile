@@ -8,6 +8,8 @@
 #                 BENCH: options, such as BENCH='--only 8x8', BENCH=--quick, BENCH=--help)
 # make figures    draw the pictures of the pages again, docs/figures/
 # make simulate   let robots explore twenty worlds, docs/simulations.json (three minutes)
+# make circumscription   compare both readings of the preference, docs/circumscription.md
+#                 (twenty minutes)
 # make beyond     count what is beyond the paper's table, docs/beyond.json (an hour)
 # make clean      remove what make made
 # make committed  make the committed instances again (MAPS: folder of the real maps)
@@ -23,7 +25,7 @@ MAKERS  := $(wildcard scripts/topomap/worlds/*.py) $(addprefix scripts/topomap/m
              experience.py topology.py)
 PIP     := $(BIN)/python -m pip --quiet --disable-pip-version-check
 
-.PHONY: all table instances batch test test-long mutate lint figures bench beyond simulate clean \
+.PHONY: all table instances batch test test-long mutate lint figures bench beyond circumscription simulate clean \
         committed anew
 .DELETE_ON_ERROR:
 
@@ -100,6 +102,9 @@ bench: $(TOOLS)
 
 figures: $(SETUP)
 	$(BIN)/topomap figures --directory docs/figures
+
+circumscription: $(TOOLS)
+	PYTHONPATH=tests $(BIN)/python -m bench.circumscription
 
 beyond: $(SETUP)
 	$(BIN)/topomap table --beyond --resume --output docs/beyond.json

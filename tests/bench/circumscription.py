@@ -29,7 +29,7 @@ ROOT = Path(__file__).resolve().parents[2]
 PAGE = ROOT / "docs/circumscription.md"
 COLUMNS = ROOT / "scripts/topomap/paper/figure4.json"
 EXPERIENCES, STEPS = 1000, 14
-MARKS = "<!-- written by `make bench`: -->\n", "<!-- end -->\n"
+MARKS = "<!-- written by `make circumscription`: -->\n", "<!-- end -->\n"
 HEAD = "| | admitted | by inclusion | by number | in both |\n|---|--:|--:|--:|--:|\n"
 
 
@@ -96,7 +96,8 @@ def tables() -> str:
     text += (
         f"\n{EXPERIENCES:,} random experiences of up to {STEPS} steps, every other one with "
         "planarity; sums over them:\n\n"
-        "| experiences | how many | admitted | by inclusion | by number | in both | they differ in |\n"
+        "| experiences | how many | admitted | by inclusion | by number | in both "
+        "| they differ in |\n"
         "|---|--:|--:|--:|--:|--:|--:|\n"
     )
     for name, group in groups.items():

@@ -14,7 +14,9 @@ from topomap.model.vocabulary import STATED
 
 FACTS = read(ROOT / "instances/grid-3x3-snake.lp").facts()
 OF_ENTRY = {
-    "topomap": [*PARTS, "bound", "minimal", "genus", "noise", "query", "explain"],
+    "topomap": [
+        *(*PARTS, "bound", "minimal", "genus", "noise", "query", "explain", "circumscribe")
+    ],
     "paper/topomap": [*(f"paper/{part}" for part in ("bound", *STATED)), "paper/beyond/marker"],
 }
 # They are loaded by programs, which add a fact that says so, and not by plain clingo.

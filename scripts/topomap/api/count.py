@@ -31,8 +31,8 @@ Number = Literal[
 class Counts(Reply, Mapping[str, Figure]):
     """The figures of a search tree, by name: ``per_step`` (hypotheses after each step, from 0),
     ``nodes``, ``maps_built``, ``final``, ``closed``, ``closed_text``, ``optimal``,
-    ``perpendicular``; if they were asked for, ``circumscribed`` and ``circumscribed_kind``. What was
-    not counted is None."""
+    ``perpendicular``; if they were asked for, ``circumscribed`` and ``circumscribed_kind``. What
+    was not counted is None."""
 
     def __init__(self, figures: Mapping[str, Any], fault: str | None):
         super().__init__(fault)

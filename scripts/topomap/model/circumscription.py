@@ -30,7 +30,7 @@ class Extent(NamedTuple):
 
 def extent(experience: Experience, at: Sequence[DState]) -> Extent:
     """The paths and places of a hypothesis, given by its dstate after each step."""
-    world = experience.map_of(at)
+    world = experience.map_of(tuple(at))
     axes = experience.slots // 2
     first: dict[tuple[int, int], int] = {}
     for step, (place, slot) in reversed([*enumerate(at)][1:]):

@@ -16,6 +16,7 @@ from matplotlib.ticker import MaxNLocator, NullFormatter
 from topomap.drawing import panel, scenes, sheet
 from topomap.drawing.mesh import Points
 from topomap.drawing.scenes import Scene
+from topomap.model.circumscription import extent
 from topomap.model.experience import Experience
 from topomap.model.facts import read
 from topomap.model.query import Query
@@ -23,6 +24,7 @@ from topomap.paper import figure4
 from topomap.runtime.watch import Stopped, Watch
 from topomap.search import branching, traversal
 from topomap.solver import solving
+from topomap.solver.circumscription import circumscribed
 from topomap.solver.enumeration import best_maps
 from topomap.worlds.environment import grid
 from topomap.worlds.instance import instance
@@ -48,6 +50,7 @@ def figures(folder: Path, watch: Watch) -> dict[str, Callable[[], Figure]]:
             [of(f"manhattan-{name}") for name in ("tour20", "tour40-signs30", "tour88-signs30")],
             watch,
         ),
+        "circumscription": lambda: circumscription(watch),
         "first": lambda: first(watch),
         "place": place,
     }
@@ -337,6 +340,24 @@ def figure5(experience: Experience, watch: Watch) -> Figure:
             titled(never, f"(d) optimal; {_told(is_told(never))} by going on"),
         ],
         columns=2,
+    )
+
+
+def circumscription(watch: Watch) -> Figure:
+    """A walk of four steps of which two maps are circumscribed, and one of these is smaller."""
+    fork = frozenset([0, 2, 4])
+    experience = Experience(6, (fork,) * 5, (4, 2, 2, 2))
+    found = [*circumscribed(experience, Query(), watch)]
+    found.sort(key=lambda one: len(experience.map_of(one.at).paths()))
+    return sheet.picture(
+        [
+            titled(
+                Scene(experience.map_of(one.at), one.at, ""),
+                f"({letter}) {len((names := extent(experience, one.at)).paths)} paths, "
+                f"{len(names.places)} places",
+            )
+            for letter, one in zip("ab", found, strict=True)
+        ]
     )
 
 

@@ -53,7 +53,8 @@ def tree(
     ``maps_built``: those whose last step added a link, and the root; ``final``: those after the
     last step; of these ``closed``: every path holds two places, as the table counts it;
     ``closed_text``: no pending gateway; ``optimal``; ``perpendicular``: closed and
-    qualitatively perpendicular; if asked for, ``circumscribed``, and of which kind. What the time limit cuts off stays None.
+    qualitatively perpendicular; if asked for, ``circumscribed``, and of which kind. What the time
+    limit cuts off stays None.
 
     A node of the tree at depth t is an answer set with ``-c horizon=t``. Large levels are
     counted cube by cube, each a unit of the journal.
