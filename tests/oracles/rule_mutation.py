@@ -18,7 +18,7 @@ import signal
 import sys
 import tomllib
 from collections import Counter
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import groupby, product
 from pathlib import Path
@@ -126,6 +126,11 @@ def closure(folder: Path, files: tuple[str, ...]) -> tuple[str, ...]:
 def sets(folder: Path, asked: list[Query]) -> dict[tuple[str, ...], tuple[str, ...]]:
     """What is loaded by each set of files that a query names."""
     return {files: closure(folder, files) for files in dict.fromkeys(q.files for q in asked)}
+
+
+def whole_program(files: Iterable[Sequence[str]]) -> str:
+    """The statements of several files, each of which begins as the base program, as for clingo."""
+    return "\n".join(text for texts in files for text in ("#program base.", *texts))
 
 
 def mutants(folder: Path, file: str) -> list[Mutant]:
@@ -273,7 +278,7 @@ def fates(
     texts = {file: list(map(str, statements(folder, file))) for file in names}
 
     def program(files: tuple[str, ...]) -> str:
-        return "\n".join(text for name in loaded[files] for text in texts[name])
+        return whole_program(texts[name] for name in loaded[files])
 
     whole = {files: program(files) for files in loaded}
     lean = {file for query in measured for file in loaded[query.files]}

@@ -10,6 +10,7 @@ from oracles import rule_mutation as mutate
 from oracles.known_answers import (
     Query,
     check,
+    circumscription,
     demands,
     ends,
     faults,
@@ -250,6 +251,7 @@ def test_an_encoding_that_gives_a_wrong_answer_unchanged_is_refused(mutated, mon
     "suite",
     [
         squares,
+        circumscription,
         ends,
         demands,
         faults,
@@ -262,8 +264,8 @@ def test_the_encodings_answer_right(suite):
     for query in suite():
         if query.files not in programs:
             names = mutate.closure(ENCODINGS, query.files)
-            parts = (mutate.statements(ENCODINGS, name) for name in names)
-            programs[query.files] = "\n".join(str(rule) for part in parts for rule in part)
+            parts = (map(str, mutate.statements(ENCODINGS, name)) for name in names)
+            programs[query.files] = mutate.whole_program(parts)
         assert mutate.tried(programs[query.files], query) == "survived", query
     assert programs
 
