@@ -16,7 +16,6 @@ from matplotlib.ticker import MaxNLocator, NullFormatter
 from topomap.drawing import panel, scenes, sheet
 from topomap.drawing.mesh import Points
 from topomap.drawing.scenes import Scene
-from topomap.model.circumscription import extent
 from topomap.model.experience import Experience
 from topomap.model.facts import read
 from topomap.model.query import Query
@@ -348,15 +347,13 @@ def circumscription(watch: Watch) -> Figure:
     fork = frozenset([0, 2, 4])
     experience = Experience(6, (fork,) * 5, (4, 2, 2, 2))
     found = [*circumscribed(experience, Query(), watch)]
-    found.sort(key=lambda one: len(experience.map_of(one.at).paths()))
+    (least,) = best_maps(experience, Query(), watch)[0]
+    found.sort(key=lambda one: one.at != least.at)
+    captions = "(a) circumscribed, and best by number", "(b) circumscribed"
     return sheet.picture(
         [
-            titled(
-                Scene(experience.map_of(one.at), one.at, ""),
-                f"({letter}) {len((names := extent(experience, one.at)).paths)} paths, "
-                f"{len(names.places)} places",
-            )
-            for letter, one in zip("ab", found, strict=True)
+            titled(Scene(experience.map_of(one.at), one.at, ""), caption)
+            for one, caption in zip(found, captions, strict=True)
         ]
     )
 
