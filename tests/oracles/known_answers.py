@@ -350,8 +350,8 @@ def circumscription() -> Iterator[Query]:
         if not 1 < len(names) < 100:
             continue
         atoms = {
-            at: [f"path,{kind}({','.join(map(str, n))})" for kind, *n in paths]
-            + [f"place,{place}" for place in places]
+            at: [f"path,{kind}({','.join(map(str, n))})" for kind, *n in sorted(paths)]
+            + [f"place,{place}" for place in sorted(places)]
             for at, (paths, places) in names.items()
         }
 
@@ -934,7 +934,7 @@ def alone() -> Iterator[Query]:
         )
     }
     defined = " ".join(
-        f"#defined {name}/{number.count(',') + 1 if number else 0}." for name, number in atoms
+        f"#defined {name}/{number.count(',') + 1 if number else 0}." for name, number in sorted(atoms)
     )
     entries = ("phases/topomap", "phases/visits", "phases/runs", "phases/lines", "online")
     for file, text in sorted(texts.items()):
