@@ -934,7 +934,8 @@ def alone() -> Iterator[Query]:
         )
     }
     defined = " ".join(
-        f"#defined {name}/{number.count(',') + 1 if number else 0}." for name, number in sorted(atoms)
+        f"#defined {name}/{number.count(',') + 1 if number else 0}."
+        for name, number in sorted(atoms)
     )
     entries = ("phases/topomap", "phases/visits", "phases/runs", "phases/lines", "online")
     for file, text in sorted(texts.items()):
