@@ -1,11 +1,12 @@
 """Answers of ``solve``: maps as JSON, or as lines to read."""
 
 import json
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import IO, Any
 
 from topomap.model import words
-from topomap.model.experience import Experience, Misread
+from topomap.model.compact import CompactMap, Numbering
+from topomap.model.experience import DState, Experience, Misread
 from topomap.model.found import UNPROVED, Found, steps_json
 from topomap.model.query import Query
 from topomap.model.topology import Gateway, TopologicalMap
@@ -46,14 +47,70 @@ def misread_json(experience: Experience, misread: Sequence[Misread]) -> list[dic
 def map_line(experience: Experience, found: Found) -> str:
     """A hypothesis in one line: what it disbelieves, its size, and the dstate after each step.
     The experience is the corrected one."""
-    world = experience.map_of(found.at)
-    pending = sum(map(len, world.stars.values())) - len(world.links)
-    return (
-        f"{words.disbelieved(experience, found.misread)}"
-        f"places {len(world.stars)}, links {len(world.links) // 2}, paths {len(world.paths())}, "
-        f"genus {world.genus()}, pending {pending}: "
-        + " ".join(f"{place}.{slot}" for place, slot in found.at)
-    )
+    return Texts(experience).line(found)
+
+
+class Texts:
+    """The maps of one experience as text; what is the same in many of them is made once."""
+
+    def __init__(self, experience: Experience):
+        """The experience is the corrected one, if views may be wrong."""
+        self._experience = experience
+        self._numbering = Numbering(experience)
+        self._names: dict[DState, str] = {}  # of a dstate, in a line
+        slots = experience.slots
+        self._gateways = [  # by number, as JSON
+            f"[{number // slots}, {number % slots}]"
+            for number in range(slots * len(experience.views))
+        ]
+        self._places = [
+            json.dumps({"place": place, "gateways": sorted(view), "landmarks": sorted(landmarks)})
+            for place, (view, landmarks) in enumerate(
+                zip(experience.views, experience.landmarks, strict=True)
+            )
+        ]
+
+    def line(self, found: Found) -> str:
+        """A hypothesis in one line: what it disbelieves, its size, and the dstate after each
+        step."""
+        one = CompactMap(self._numbering, found.at)
+        names = self._names
+        try:
+            way = " ".join([names[dstate] for dstate in found.at])
+        except KeyError:
+            for place, slot in found.at:
+                names[place, slot] = f"{place}.{slot}"
+            way = " ".join([names[dstate] for dstate in found.at])
+        told = words.disbelieved(self._experience, found.misread) if found.misread else ""
+        return (
+            f"{told}places {len(one.places)}, links {len(one.link) // 2}, "
+            f"paths {one.number_of_paths()}, genus {one.genus()}, "
+            f"pending {one.number_of_pending()}: {way}"
+        )
+
+    def document(self, at: Sequence[DState]) -> str:
+        """A hypothesis as JSON text: that of ``map_json``."""
+        one = CompactMap(self._numbering, at)
+        texts, slots = self._gateways, self._experience.slots
+        link, faces = one.link, one.faces()
+
+        def listed(gateways: Iterable[int]) -> str:
+            return f"[{', '.join([texts[gateway] for gateway in gateways])}]"
+
+        steps = [f"[{step}, {place}, {slot}]" for step, (place, slot) in enumerate(at)]
+        links = [f"[{texts[a]}, {texts[link[a]]}]" for a in sorted(link) if a < link[a]]
+        pending = [gateway for gateway in one.gateways() if gateway not in link]
+        place, slot = at[-1]
+        return (
+            f'{{"at": [{", ".join(steps)}], '
+            f'"places": [{", ".join([self._places[place] for place in one.places])}], '
+            f'"links": [{", ".join(links)}], '
+            f'"paths": [{", ".join(map(listed, one.paths()))}], '
+            f'"faces": [{", ".join(map(listed, faces))}], '
+            f'"genus": {one.genus(len(faces))}, '
+            f'"pending": {listed(pending)}, '
+            f'"dstate": {texts[place * slots + slot]}}}'
+        )
 
 
 class Report:
@@ -71,6 +128,7 @@ class Report:
     ):
         self.out, self.as_json = out, as_json
         self.experience, self.truth = experience, truth
+        self._texts = Texts(experience)
         self.count = self.real = 0
         self.noisy = query.noise is not None
         self.last = Found((), kind or query.kind)
@@ -93,21 +151,27 @@ class Report:
         """Write one map."""
         self.count += 1
         self.last = found
-        corrected = self.experience.corrected(found.misread)
+        corrected, texts = self.experience, self._texts
+        if found.misread:
+            corrected = self.experience.corrected(found.misread)
+            texts = Texts(corrected)
         real = False
         if self.truth:
             real = corrected.map_of(found.at).isomorphic(self.truth)
             self.real += real
         if self.as_json:
-            answer = map_json(corrected.map_of(found.at), found.at)
+            more: dict[str, Any] = {}
             if self.noisy:
-                answer["misread"] = misread_json(self.experience, found.misread)
+                more["misread"] = misread_json(self.experience, found.misread)
             if self.truth:
-                answer["real"] = real
-            self.out.write((",\n" if self.count > 1 else "\n") + json.dumps(answer))
+                more["real"] = real
+            document = texts.document(found.at)
+            if more:
+                document = f"{document[:-1]}, {json.dumps(more)[1:]}"
+            self.out.write((",\n" if self.count > 1 else "\n") + document)
         else:
             mark = " (the real map)" if real else ""
-            self.out.write(f"map {self.count}{mark}: {map_line(corrected, found)}\n")
+            self.out.write(f"map {self.count}{mark}: {texts.line(found)}\n")
 
     def end(self, fault: str | None, nodes: int | None = None) -> None:
         """Write what the maps are, and whether they are all; ``nodes`` were searched. Where they

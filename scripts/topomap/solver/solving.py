@@ -5,11 +5,10 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import replace
 from functools import cache
 from operator import itemgetter
-from typing import Any
 
 import clingo
 
-from topomap.model.experience import Experience, Misread
+from topomap.model.experience import DState, Experience, Misread
 from topomap.model.found import Cube, Found
 from topomap.model.query import Query
 from topomap.model.vocabulary import PRUNING
@@ -56,16 +55,35 @@ def misreadings(terms: Iterable[Sequence[clingo.Symbol]]) -> tuple[Misread, ...]
     return tuple(sorted([*sorted(gateways), *sorted(landmarks)], key=itemgetter(0)))
 
 
-class _Terms(dict[clingo.Symbol, tuple[str, Any]]):
-    """The name of each atom, and its terms, of ``at/3`` as numbers. Each atom is read once: to
-    ask clingo for its parts takes longer than to find the atom again in the next map."""
+class _Terms:
+    """What the shown atoms of many models say. Each atom is read once, and then known by the number
+    by which clingo knows it: to ask clingo for its parts, or to compare two atoms, takes longer
+    than all else that is done for a map."""
 
-    def __missing__(self, atom: clingo.Symbol) -> tuple[str, Any]:
-        terms: Any = atom.arguments
-        if atom.name == "at":
-            terms = tuple(term.number for term in terms)
-        self[atom] = atom.name, terms
-        return self[atom]
+    def __init__(self) -> None:
+        self._steps: dict[int, tuple[int, DState]] = {}  # of at/3
+        self._others: dict[int, tuple[str, list[clingo.Symbol]]] = {}
+
+    def of(
+        self, atoms: Sequence[clingo.Symbol]
+    ) -> tuple[tuple[DState, ...], list[tuple[str, list[clingo.Symbol]]]]:
+        """The dstate after each step, and the name and terms of each other atom."""
+        numbers = [atom._rep for atom in atoms]
+        steps, others = self._steps, self._others
+        try:
+            said = [steps[number] for number in numbers]
+            rest = []
+        except KeyError:
+            for atom, number in zip(atoms, numbers, strict=True):
+                if atom.name == "at":
+                    step, place, slot = (term.number for term in atom.arguments)
+                    steps[number] = step, (place, slot)
+                else:
+                    others[number] = atom.name, atom.arguments
+            said = [steps[number] for number in numbers if number in steps]
+            rest = [others[number] for number in numbers if number in others]
+        said.sort()
+        return tuple([dstate for _, dstate in said]), rest
 
 
 def hypotheses(
@@ -82,11 +100,9 @@ def hypotheses(
     known = _Terms()
 
     def read(model: clingo.Model) -> Found:
-        shown = [known[atom] for atom in model.symbols(shown=True)]
-        steps = sorted(terms for name, terms in shown if name == "at")
-        at = tuple((place, slot) for _, place, slot in steps)
+        at, others = known.of(model.symbols(shown=True))
         if query.optimizes:
-            misread = misreadings(terms for name, terms in shown if name == "misread")
+            misread = misreadings(terms for name, terms in others if name == "misread")
             cost = tuple(model.cost)
             return Found(at, kind or query.kind, cost, model.optimality_proven, misread)
         return Found(at, kind or query.kind)

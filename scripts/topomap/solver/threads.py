@@ -7,6 +7,7 @@ then wants to call Python would take the whole process with it.
 
 import _thread
 import atexit
+import collections
 import contextlib
 import os
 import queue
@@ -22,6 +23,9 @@ from topomap.runtime.status import INTERRUPT
 from topomap.runtime.watch import MEMORY, Stopped, Watch
 
 AHEAD = 1000  # answers that wait to be taken, at most
+# Seconds between two times that a thread wakes the one that waits for what it hands over, and that
+# this one sleeps at most: where answers come fast, many are taken at a time.
+WAKING, SLEEP, TURN = 0.002, 0.01, 0.1
 PATIENCE = 1.0  # seconds that a thread has to end when the process does
 
 Put = Callable[[Any], bool]  # hands an item over; False if no more of them are wanted
@@ -103,7 +107,9 @@ class _Run:
         if self.leaving:
             raise Stopped(INTERRUPT)
         self._program, self._work = program, work
-        self._items: queue.SimpleQueue[Any] = queue.SimpleQueue()
+        self._items: collections.deque[Any] = collections.deque()
+        self._woken = 0.0
+        self._some = threading.Event()
         self._room, self._stop = threading.Event(), threading.Event()
         self._over = threading.Event()
         self._worker = _Worker.hire()
@@ -118,32 +124,45 @@ class _Run:
             except Exception as error:  # raised again in the thread that waits
                 end = error
             # What was stopped may have ended early, and its errors hold what it worked with.
-            self._items.put(Stopped(INTERRUPT) if self._stop.is_set() else end)
+            self._items.append(Stopped(INTERRUPT) if self._stop.is_set() else end)
+            self._some.set()
         finally:
             del end
             self.live.discard(self)
 
     def _put(self, item: Any) -> bool:
         """Hand an item over, once there is room for it."""
-        if self._items.qsize() >= AHEAD:
+        if len(self._items) >= AHEAD:
             self._room.clear()
+            self._some.set()
             # Only now it is sure that whoever makes room, or stops this, wakes it.
-            if self._items.qsize() >= AHEAD and not self._stop.is_set():
+            if len(self._items) >= AHEAD and not self._stop.is_set():
                 self._room.wait()
-        if not self._stop.is_set():
-            self._items.put(item)
-        return not self._stop.is_set()
+        if self._stop.is_set():
+            return False
+        self._items.append(item)
+        if (now := time.monotonic()) - self._woken > WAKING:
+            self._woken = now
+            self._some.set()
+        return True
 
     def get(self) -> Any:
         """The next item. Raises queue.Empty if there is none for a while, and Stopped if there
         will be none as memory ran out."""
-        try:
-            item = self._items.get(timeout=0.1)
-        except queue.Empty:
-            if not self._worker.is_alive() and self._items.empty():  # it could not even say why
-                raise Stopped(MEMORY) from None
-            raise
-        if self._items.qsize() <= AHEAD // 2 and not self._room.is_set():
+        items = self._items
+        if not items:
+            end = time.monotonic() + TURN
+            while not items:
+                # Nobody sets it between the look and the sleep: it is cleared before the look.
+                self._some.clear()
+                if not items:
+                    self._some.wait(SLEEP)
+                if not items and time.monotonic() > end:
+                    if not self._worker.is_alive() and not items:  # it could not even say why
+                        raise Stopped(MEMORY)
+                    raise queue.Empty
+        item = items.popleft()
+        if len(items) <= AHEAD // 2 and not self._room.is_set():
             self._room.set()
         return item
 

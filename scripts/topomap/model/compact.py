@@ -1,0 +1,138 @@
+"""The map of a hypothesis in numbers, for answers of a million maps: what is the same in all maps
+of an experience is worked out once.
+
+A gateway, or bare direction, is the number ``place * slots + slot``; a place is the step of its
+first visit. ``TopologicalMap`` is the definition; tests find the two equal.
+"""
+
+from collections.abc import Sequence
+
+from topomap.model.experience import DState, Experience
+
+Number = int
+
+
+class Numbering:
+    """What all maps of one experience have in common."""
+
+    def __init__(self, experience: Experience):
+        self.slots = slots = experience.slots
+        self.turns = experience.turns
+        views = [sorted(view) for view in experience.views]
+        # Of each place: its gateways, and how many axes they lie on.
+        self.gateways = [
+            [place * slots + slot for slot in view] for place, view in enumerate(views)
+        ]
+        self.axes = [len({slot % (slots // 2) for slot in view}) for view in views]
+        # The gateway before each one, counter-clockwise at its place; and straight across it.
+        self.before: dict[Number, Number] = {}
+        self.opposite: dict[Number, Number] = {}
+        for place, star in enumerate(self.gateways):
+            self.before.update(zip(star, [star[-1], *star], strict=False))
+            for slot in range(slots):
+                across = place * slots + (slot + slots // 2) % slots
+                self.opposite[place * slots + slot] = across
+
+
+class CompactMap:
+    """The map of a hypothesis, given by its dstate after each step (the paper, sections II and
+    III): ``places``, ``gateways``, and ``link``, which joins gateways both ways."""
+
+    __slots__ = ("_all", "link", "places")
+
+    def __init__(self, numbering: Numbering, at: Sequence[DState]):
+        self._all = numbering
+        slots = numbering.slots
+        place, slot = at[0]
+        self.places = [0]
+        self.link: dict[Number, Number] = {}
+        link = self.link
+        for step, turn in enumerate(numbering.turns[: len(at) - 1], 1):
+            out = place * slots + (slot + turn) % slots
+            place, slot = at[step]
+            arrival = place * slots + slot
+            link[out] = arrival
+            link[arrival] = out
+            if place == step:
+                self.places.append(step)
+
+    def gateways(self) -> list[Number]:
+        """All gateways, in order."""
+        every = self._all.gateways
+        return [gateway for place in self.places for gateway in every[place]]
+
+    def number_of_paths(self) -> int:
+        """How many paths there are. As no path is circular, each link makes two paths one, so there
+        are as many as there are axes, less the links."""
+        axes = self._all.axes
+        return sum([axes[place] for place in self.places]) - len(self.link) // 2
+
+    def number_of_pending(self) -> int:
+        """How many gateways have no link."""
+        every = self._all.gateways
+        return sum([len(every[place]) for place in self.places]) - len(self.link)
+
+    def genus(self, faces: int | None = None) -> int:
+        """The genus by the Euler-Poincare formula; the number of faces, if it is known, need not
+        be found again."""
+        faces = self.number_of_faces() if faces is None else faces
+        return (2 - len(self.places) + len(self.link) // 2 - faces) // 2
+
+    def number_of_faces(self) -> int:
+        """How many faces there are."""
+        link, before = self.link, self._all.before
+        left, faces = set(link), 0 if link else 1
+        while left:
+            first = gateway = left.pop()
+            faces += 1
+            while True:
+                gateway = before[link[gateway]]
+                while gateway not in link:
+                    gateway = before[gateway]
+                if gateway == first:
+                    break
+                left.remove(gateway)
+        return faces
+
+    def faces(self) -> list[list[Number]]:
+        """Each face as the gateways its walk leaves by, as ``TopologicalMap.faces`` has them."""
+        link, before = self.link, self._all.before
+        faces, done = [], set()
+        for start in sorted(link):
+            if start in done:
+                continue
+            face, gateway = [start], start
+            while True:
+                gateway = before[link[gateway]]
+                while gateway not in link:
+                    gateway = before[gateway]
+                if gateway == start:
+                    break
+                face.append(gateway)
+            done.update(face)
+            faces.append(face)
+        return faces or [[]]
+
+    def paths(self) -> list[list[Number]]:
+        """Each path as its headings in order, as ``TopologicalMap.paths`` has them."""
+        link, opposite = self.link, self._all.opposite
+        paths, done = [], set()
+        for gateway in self.gateways():
+            if gateway in done:
+                continue
+            # Back to where the path begins; no path is circular.
+            path = [gateway]
+            ahead = opposite[gateway]
+            while ahead in link:
+                path.append(link[ahead])
+                ahead = opposite[link[ahead]]
+            path.reverse()
+            ahead = gateway
+            while ahead in link:
+                ahead = opposite[link[ahead]]
+                path.append(ahead)
+            for heading in path:
+                done.add(heading)
+                done.add(opposite[heading])
+            paths.append(path)
+        return paths
