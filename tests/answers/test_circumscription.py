@@ -14,8 +14,11 @@ from oracles.worlds import WORLDS, random_experience
 from topomap.model.circumscription import extent
 from topomap.model.facts import read
 from topomap.model.query import Query
-from topomap.runtime.watch import Watch
+from topomap.runtime.watch import Stopped, Watch
 from topomap.solver import circumscription
+from topomap.solver.enumeration import best_maps
+from topomap.worlds.environment import grid
+from topomap.worlds.instance import instance
 
 PAGE = (ROOT / "docs/circumscription.md").read_text()
 
@@ -34,20 +37,25 @@ def case(number):
     draw = random.Random(f"circumscribed {number}")
     experience = random_experience(draw, 10, marker=draw.random() < 0.2)
     parts = draw.choice([(), (), ("planar",), ("perpendicular",), ("travelled",)])
-    return experience, parts, draw.choice([None, None, draw.randint(2, 6)])
+    bound = draw.choice([None, None, draw.randint(2, 6)])
+    horizon = draw.choice([None, None, None, draw.randint(0, experience.steps)])
+    return experience, parts, bound, horizon
 
 
+@pytest.mark.parametrize("listed", [circumscription.LISTED, 0, 2])
 @pytest.mark.parametrize(
-    "numbers", [range(120), pytest.param(range(120, 900), marks=pytest.mark.long)]
+    "numbers", [range(70), pytest.param(range(70, 520), marks=pytest.mark.long)]
 )
-def test_two_ways_find_what_comparing_all_maps_finds(numbers, record_property):
+def test_two_ways_find_what_comparing_all_maps_finds(numbers, listed, record_property, monkeypatch):
+    """Also where clingo lists no maps first, or only some."""
+    monkeypatch.setattr(circumscription, "LISTED", listed)
     more = kinds = 0
     for number in numbers:
-        experience, parts, bound = case(number)
-        truth = Truth(experience)
+        experience, parts, bound, horizon = case(number)
+        truth = Truth(experience if horizon is None else experience.cut(horizon))
         maps, closed = admitted(truth, *parts, bound=bound)
         right = circumscribed(maps)
-        query = Query(frozenset(parts), bound)
+        query = Query(frozenset(parts), bound, horizon)
         for by in "clingo", "search":
             found = list(circumscription.circumscribed(experience, query, Watch(), by))
             assert len(found) == len(right), number
@@ -58,8 +66,9 @@ def test_two_ways_find_what_comparing_all_maps_finds(numbers, record_property):
         fewest = min((one.cost() for one in maps), default=None)
         by_number = {one.at for one in maps if one.cost() == fewest}
         assert by_number <= right  # a theorem
-        if not parts and bound is None:
-            assert by_number == best(truth.experience, truth.final, closed)
+        found, fault = best_maps(experience, query, Watch())
+        assert fault is None
+        assert {one.at for one in found} == by_number
         more += right != by_number
         kinds += closed
     assert more > len(numbers) / 200
@@ -74,8 +83,8 @@ def test_names_are_those_of_the_definition():
 
 
 def test_the_first_map_of_stock_clingo_is_circumscribed_and_can_be_checked(tmp_path):
-    for number in range(40):
-        experience, _, _ = case(number)
+    for number in range(15):
+        experience, *_ = case(number)
         truth = Truth(experience)
         maps = [truth.final[at] for at in truth.having("boundary")]
         right = circumscribed(maps)
@@ -119,7 +128,43 @@ def test_the_page_has_the_figures_of_the_columns(column):
     assert re.search(row, PAGE, re.MULTILINE)
 
 
-FORKS = re.search(r"^```asp forks.lp\n(.*?)^```", PAGE, re.MULTILINE | re.DOTALL)[1]
+@pytest.mark.parametrize("listed", [circumscription.LISTED, 0])
+def test_walks_that_are_solved_in_phases(listed, monkeypatch):
+    """Closed maps of at most so many places, from forty steps on."""
+    monkeypatch.setattr(circumscription, "LISTED", listed)
+    many = 0
+    for seed in range(2):
+        draw = random.Random(f"phases {seed}")
+        made = instance(grid(3, 3), "".join(walk_on_grid(draw, 3, 3, 42)))
+        query = Query(frozenset(["planar"] if seed % 2 else []), 9 + seed % 2)
+        found = [
+            {one.at for one in circumscription.circumscribed(made.experience, query, Watch(), by)}
+            for by in ("clingo", "search")
+        ]
+        assert found[0] == found[1]
+        many += len(found[0])
+    assert many
+
+
+def walk_on_grid(draw, rows, columns, steps):
+    """The letters of a random walk from a corner."""
+    row = column = 0
+    for _ in range(steps):
+        ways = {"N": (-1, 0), "E": (0, 1), "S": (1, 0), "W": (0, -1)}
+        kept = {
+            letter: (row + down, column + right)
+            for letter, (down, right) in ways.items()
+            if row + down in range(rows) and column + right in range(columns)
+        }
+        letter = draw.choice(sorted(kept))
+        row, column = kept[letter]
+        yield letter
+
+
+FORKS, PRISM = (
+    re.search(rf"^```asp {name}.lp\n(.*?)^```", PAGE, re.MULTILINE | re.DOTALL)[1]
+    for name in ("forks", "prism")
+)
 
 
 def test_the_example_of_the_page(tmp_path, topomap):
@@ -139,6 +184,18 @@ def test_the_example_of_the_page(tmp_path, topomap):
     assert (counted["circumscribed"], counted["circumscribed_kind"]) == (2, told["kind"])
     plain = json.loads(topomap("count", file, "--json").stdout)
     assert "circumscribed" not in plain
+
+
+def test_the_closed_example_of_the_page(tmp_path):
+    """The readings differ among closed maps, too."""
+    file = tmp_path / "prism.lp"
+    file.write_text(PRISM)
+    truth = Truth(read(file))
+    maps, closed = admitted(truth)
+    assert closed
+    right = circumscribed(maps)
+    assert sorted(truth.final[at].cost() for at in right) == [(6, 4), (9, 6)]
+    assert len(best(truth.experience, truth.final, True)) == 1
 
 
 def test_the_functions(tmp_path):
@@ -183,7 +240,25 @@ def test_without_a_map(inside, tmp_path):
     assert done.stdout == "0 circumscribed maps\n"
 
 
-def test_a_limit_of_time_keeps_what_was_found(inside):
+def test_a_limit_keeps_what_was_found(inside, tmp_path):
     done = inside("solve", "instances/grid-4x4-snake.lp", "--circumscribe", "--timeout", "0.001")
+    assert (done.returncode, done.stdout) == (3, "no map found yet; partial: timeout\n")
+    file = tmp_path / "forks.lp"
+    file.write_text(FORKS)
+    done = inside("solve", file, "--circumscribe", "--limit", "1")
     assert done.returncode == 3
-    assert "partial: timeout" in done.stdout
+    assert done.stdout.endswith(
+        "1 circumscribed so far map found, more may exist; partial: limit\n"
+    )
+
+
+def test_the_first_one_of_many_comes_before_all_are_known():
+    """Each kind of map is given as soon as it is proved."""
+    seen = topomap.read(ROOT / "instances/grid-4x4-snake.lp")
+    watch = Watch()
+    found = circumscription.circumscribed(seen.cut(28), Query(), watch)
+    first = next(found)
+    assert first.kind.startswith("circumscribed")
+    watch.ended = "enough"
+    with pytest.raises(Stopped, match="enough"):
+        list(found)

@@ -138,7 +138,7 @@ class Hypothesis:
 
     def names(self):
         """The paths, each by the first step along it, or by its place and lower slot there, and
-        the places: what circumscription compares (semantics: circumscription)."""
+        the places: what circumscription compares (docs/circumscription.md)."""
         paths = set()
         for path in self.paths():
             ends = {(p, s % (self.slots // 2)) for p, s in path}

@@ -164,7 +164,8 @@ class Answer(Sequence[Map]):
 
     @property
     def kind(self) -> str:
-        """What the maps are: consistent, best, optimal, best so far; or not proved to be best.
+        """What the maps are: consistent, best, optimal, best so far, circumscribed, circumscribed
+        so far; or not proved to be best.
         "no map" if it is proved that there is none, "not settled" if none was found as yet."""
         known = self._settled()
         if known.last is None:

@@ -38,9 +38,10 @@ def solve(
         experience: what was seen and done.
         optimal: closed maps with consistent boundaries, fewest paths, then fewest places; if
             there is none, the best so far, pending gateways allowed.
-        circumscribe: the same preference by set inclusion: maps that no other map is preferred
-            to, which has but a part of the paths, or the same paths and but a part of the places
-            (the paper, section II: the circumscription policy).
+        circumscribe: the same preference by set inclusion (the paper, section II: the
+            circumscription policy): the maps to which none is preferred. A map is preferred to
+            another one if its paths are some but not all of the other one's, or if its paths are
+            the same and its places are some but not all of the other one's.
         bound: the most places that a map may have.
         horizon: the last step that counts.
         noise: how many views may be wrong, as few as can be.

@@ -176,9 +176,10 @@ def add_circumscribe(command: Parser) -> None:
     command.add_argument(
         "--circumscribe",
         action="store_true",
-        help="the same preference by set inclusion, as circumscription has it: maps that no other "
-        "map is preferred to, which has some of their paths and no others, or the same paths and "
-        "some of their places and no others",
+        help="the same preference by set inclusion, as circumscription has it: the maps to which "
+        "none is preferred. A map is preferred to another one if its paths are some but not all "
+        "of the other one's, or if its paths are the same and its places are some but not all of "
+        "the other one's",
     )
 
 

@@ -1,31 +1,24 @@
 """Which of two maps is preferred by set inclusion, from the definition: the policy of
 circumscription (the paper, section II)."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Hashable, Iterable, Sequence
 from typing import NamedTuple
 
 from topomap.model.experience import DState, Experience
 
-Name = tuple[str | int, ...]
+OFTEN = 64  # comparisons of one set with all others between two looks at the clock
 
 
 class Extent(NamedTuple):
     """The paths and the places of a map, by names that do not depend on the map.
 
-    A path is named by the first step that travelled it, ``("first", T)``, or, if none did, by a
-    place and the lower one of its slots there, ``("axis", P, S)``; a place by the step of its
-    first visit.
+    By ``extent``, a path is named by the first step that travelled it, ``("first", T)``, or, if
+    none did, by a place and the lower one of its slots there, ``("axis", P, S)``; a place by the
+    step of its first visit.
     """
 
-    paths: frozenset[Name]
-    places: frozenset[int]
-
-    def preferred_to(self, other: "Extent") -> bool:
-        """Whether the map has a proper part of the other one's paths, or the same paths and a
-        proper part of its places."""
-        if self.paths != other.paths:
-            return self.paths < other.paths
-        return self.places < other.places
+    paths: frozenset[Hashable]
+    places: frozenset[Hashable]
 
 
 def extent(experience: Experience, at: Sequence[DState]) -> Extent:
@@ -36,7 +29,7 @@ def extent(experience: Experience, at: Sequence[DState]) -> Extent:
     for step, (place, slot) in reversed([*enumerate(at)][1:]):
         # Step T arrived at its gateway through the path that leads through it.
         first[place, slot % axes] = step
-    paths: set[Name] = set()
+    paths: set[Hashable] = set()
     for path in world.paths():
         on = [(place, slot % axes) for place, slot in path]
         steps = [first[axis] for axis in on if axis in first]
@@ -44,12 +37,34 @@ def extent(experience: Experience, at: Sequence[DState]) -> Extent:
     return Extent(frozenset(paths), frozenset(world.stars))
 
 
-def least(extents: Iterable[Extent]) -> set[Extent]:
-    """Those that no other one is preferred to."""
-    found: set[Extent] = set()
-    for one in sorted(set(extents), key=lambda one: (len(one.paths), len(one.places))):
-        # What is preferred to it is smaller, and so came before; and if that is not itself
-        # among the least, something that is preferred to it is.
-        if not any(other.preferred_to(one) for other in found):
-            found.add(one)
+def least(extents: Iterable[Extent], tick: Callable[[], None] = lambda: None) -> set[Extent]:
+    """Those that none is preferred to: no other one has some but not all of their paths and no
+    others, or the same paths, and some but not all of their places and no others. ``tick`` is
+    called now and then, and may end it by an error."""
+    by_paths: dict[frozenset[Hashable], set[frozenset[Hashable]]] = {}
+    for paths, places in extents:
+        by_paths.setdefault(paths, set()).add(places)
+    return {
+        Extent(paths, places)
+        for paths in _least(by_paths, tick)
+        for places in _least(by_paths[paths], tick)
+    }
+
+
+def _least(
+    sets: Iterable[frozenset[Hashable]], tick: Callable[[], None]
+) -> list[frozenset[Hashable]]:
+    """The sets that have none of the others as a part. Each is compared as bits of a number."""
+    bits: dict[Hashable, int] = {}
+    kept: list[int] = []
+    found = []
+    # A part of a set is smaller, and so comes before it; and if it is not itself kept, a part of
+    # it is.
+    for number, one in enumerate(sorted(sets, key=len)):
+        if number % OFTEN == 0:
+            tick()
+        mask = sum(1 << bits.setdefault(name, len(bits)) for name in one)
+        if not any(other & mask == other for other in kept):
+            kept.append(mask)
+            found.append(one)
     return found

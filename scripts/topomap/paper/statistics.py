@@ -250,7 +250,7 @@ def figures_text(figures: Mapping[str, Any], fault: str | None) -> str:
         known = "not counted" if told.get(key) is None else f"{more}{told[key]:,}"
         lines.append(f"{WORDS[key]:<42}{known:>12}")
     if (kind := figures.get("circumscribed_kind")) and kind != "circumscribed":
-        lines.append(f"the circumscribed maps are {kind}: none is closed")
+        lines.append(f"{kind}: no closed map has consistent boundaries, so gateways may be pending")
     if fault:
         lines.append(f"partial: {fault}")
     return "\n".join(lines) + "\n"

@@ -1,9 +1,10 @@
 """The maps that none is preferred to by set inclusion: the policy of circumscription.
 
-By clingo, with ``encodings/circumscribe.lp``: a map is guessed, and then checked. The solver is
-asked for a map that is preferred to it, which takes its place, until there is none. Then all maps
-with the same paths and places are answers, and each further map must lack some of these. By
-search: all maps are listed, and compared by the definition.
+By clingo, with ``encodings/circumscribe.lp``: up to LISTED maps are listed, and compared by their
+paths and places. Of more, a map is guessed, and then checked: the solver is asked for a map that is
+preferred to it, which takes its place, until there is none. Then all maps with the same paths and
+places are answers, and each further map must lack some of these. By search: all maps are listed,
+and compared by the definition.
 """
 
 from collections.abc import Callable, Iterator
@@ -12,16 +13,18 @@ from typing import Any
 
 import clingo
 
-from topomap.model.circumscription import extent, least
-from topomap.model.experience import Experience
+from topomap.model.circumscription import Extent, extent, least
+from topomap.model.experience import DState, Experience
 from topomap.model.found import Found
 from topomap.model.query import Query
 from topomap.runtime.status import INTERRUPT
 from topomap.runtime.watch import Stopped, Watch
 from topomap.search import traversal
 from topomap.solver.programs import Program, calls
+from topomap.solver.shown import Shown
 from topomap.solver.threads import Put
 
+LISTED = 10_000  # maps: to list and compare so many takes less than to check each kind of them
 PREFER, REPEAT = clingo.Function("prefer"), clingo.Function("repeat")
 Names = list[clingo.Symbol]  # the atoms has/2 of a map: its paths and places
 
@@ -53,17 +56,14 @@ def _by_clingo(experience: Experience, query: Query, watch: Watch, kind: str) ->
 
 def _by_search(experience: Experience, query: Query, watch: Watch, kind: str) -> Iterator[Found]:
     known = watch.found
-    maps = {
-        found.at: extent(experience, found.at)
-        for found in traversal.hypotheses(experience, query, watch)
-        if found
-    }
+    maps: dict[Extent, list[tuple[DState, ...]]] = {}
+    for found in traversal.hypotheses(experience, query, watch):
+        if found:
+            maps.setdefault(extent(experience, found.at), []).append(found.at)
     watch.found = known  # those were not answers
-    kept = least(maps.values())
-    for at in sorted(
-        maps, key=lambda at: (sorted(maps[at].paths, key=str), sorted(maps[at].places), at)
-    ):
-        if maps[at] in kept:
+    kept = least(maps, watch.tick)
+    for one, alike in maps.items():
+        for at in alike if one in kept else ():
             watch.found += 1
             yield Found(at, kind)
 
@@ -78,34 +78,53 @@ def _work(program: Program, put: Put) -> None:
     """Puts the dstates of each map."""
     control: Any = program.control
     program.changed = True
-    control.configuration.solver.heuristic = "Domain"
-    going = True
+    shown, going = Shown(), True
+    maps: dict[Extent, list[tuple[DState, ...]]] = {}
+    many = 0
+
+    def add(model: clingo.Model) -> bool:
+        nonlocal many
+        many += 1
+        at, others = shown.of(model.symbols(shown=True))
+        names: dict[str, set[clingo.Symbol]] = {"path": set(), "place": set()}
+        for _, (kind, name) in others:
+            names[kind.name].add(name)
+        one = Extent(frozenset(names["path"]), frozenset(names["place"]))
+        maps.setdefault(one, []).append(at)
+        return many <= LISTED
+
+    _settled(program.solve((), on_model=add))
+    if many <= LISTED:
+        kept = least(maps)
+        for one, alike in maps.items():
+            for at in alike if one in kept else ():
+                if not put(at):
+                    return
+        return
+    maps.clear()
 
     def take(model: clingo.Model) -> bool:
         nonlocal going
-        steps = sorted(
-            [a.number for a in atom.arguments]
-            for atom in model.symbols(shown=True)
-            if atom.name == "at"
-        )
-        going = put(tuple((place, slot) for _, place, slot in steps))
+        going = put(shown.of(model.symbols(shown=True))[0])
         return going
 
+    control.configuration.solver.heuristic = "Domain"
     number = 0
-    while going and (one := _first(program)) is not None:
+    while going and (names := _first(program)) is not None:
         while True:
-            with _given(control, PREFER, one):
+            with _given(control, PREFER, names):
                 better = _first(program)
             if better is None:
                 break
-            one = better
+            names = better
         control.configuration.solve.models = 0
-        with _given(control, REPEAT, one):
+        with _given(control, REPEAT, names):
             _settled(program.solve((), on_model=take))
         number += 1
-        passed = [clingo.Function("passed", [clingo.Number(number), *has.arguments]) for has in one]
+        n = clingo.Number(number)
+        passed = [clingo.Function("passed", [n, *has.arguments]) for has in names]
         control.add(f"extent_{number}", [], "".join(f"{atom}.\n" for atom in passed))
-        control.ground([(f"extent_{number}", []), ("passed", [clingo.Number(number)])])
+        control.ground([(f"extent_{number}", []), ("passed", [n])])
 
 
 def _first(program: Program) -> Names | None:

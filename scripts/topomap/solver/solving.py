@@ -8,7 +8,7 @@ from operator import itemgetter
 
 import clingo
 
-from topomap.model.experience import DState, Experience, Misread
+from topomap.model.experience import Experience, Misread
 from topomap.model.found import Cube, Found
 from topomap.model.query import Query
 from topomap.model.vocabulary import PRUNING
@@ -16,6 +16,7 @@ from topomap.runtime.folders import ENCODINGS
 from topomap.runtime.version import VERSION
 from topomap.runtime.watch import MEMORY, Stopped, Watch
 from topomap.solver.programs import answers, program_of
+from topomap.solver.shown import Shown
 from topomap.solver.threads import Put, in_thread
 
 
@@ -55,37 +56,6 @@ def misreadings(terms: Iterable[Sequence[clingo.Symbol]]) -> tuple[Misread, ...]
     return tuple(sorted([*sorted(gateways), *sorted(landmarks)], key=itemgetter(0)))
 
 
-class _Terms:
-    """What the shown atoms of many models say. Each atom is read once, and then known by the number
-    by which clingo knows it: to ask clingo for its parts, or to compare two atoms, takes longer
-    than all else that is done for a map."""
-
-    def __init__(self) -> None:
-        self._steps: dict[int, tuple[int, DState]] = {}  # of at/3
-        self._others: dict[int, tuple[str, list[clingo.Symbol]]] = {}
-
-    def of(
-        self, atoms: Sequence[clingo.Symbol]
-    ) -> tuple[tuple[DState, ...], list[tuple[str, list[clingo.Symbol]]]]:
-        """The dstate after each step, and the name and terms of each other atom."""
-        numbers = [atom._rep for atom in atoms]
-        steps, others = self._steps, self._others
-        try:
-            said = [steps[number] for number in numbers]
-            rest = []
-        except KeyError:
-            for atom, number in zip(atoms, numbers, strict=True):
-                if atom.name == "at":
-                    step, place, slot = (term.number for term in atom.arguments)
-                    steps[number] = step, (place, slot)
-                else:
-                    others[number] = atom.name, atom.arguments
-            said = [steps[number] for number in numbers if number in steps]
-            rest = [others[number] for number in numbers if number in others]
-        said.sort()
-        return tuple([dstate for _, dstate in said]), rest
-
-
 def hypotheses(
     experience: Experience,
     query: Query,
@@ -97,10 +67,10 @@ def hypotheses(
     all of the best with their proof. With ``cubes``, which is not for minimising, those
     that begin with the first of them, then a None, and so on."""
 
-    known = _Terms()
+    shown = Shown()
 
     def read(model: clingo.Model) -> Found:
-        at, others = known.of(model.symbols(shown=True))
+        at, others = shown.of(model.symbols(shown=True))
         if query.optimizes:
             misread = misreadings(terms for name, terms in others if name == "misread")
             cost = tuple(model.cost)

@@ -1,0 +1,38 @@
+"""What the shown atoms of models say."""
+
+from collections.abc import Sequence
+
+import clingo
+
+from topomap.model.experience import DState
+
+
+class Shown:
+    """What the shown atoms of many models say. Each atom is read once, and then known by the number
+    by which clingo knows it: to ask clingo for its parts, or to compare two atoms, takes longer
+    than all else that is done for a map."""
+
+    def __init__(self) -> None:
+        self._steps: dict[int, tuple[int, DState]] = {}  # of at/3
+        self._others: dict[int, tuple[str, list[clingo.Symbol]]] = {}
+
+    def of(
+        self, atoms: Sequence[clingo.Symbol]
+    ) -> tuple[tuple[DState, ...], list[tuple[str, list[clingo.Symbol]]]]:
+        """The dstate after each step, and the name and terms of each other atom."""
+        numbers = [atom._rep for atom in atoms]
+        steps, others = self._steps, self._others
+        try:
+            said = [steps[number] for number in numbers]
+            rest = []
+        except KeyError:
+            for atom, number in zip(atoms, numbers, strict=True):
+                if atom.name == "at":
+                    step, place, slot = (term.number for term in atom.arguments)
+                    steps[number] = step, (place, slot)
+                else:
+                    others[number] = atom.name, atom.arguments
+            said = [steps[number] for number in numbers if number in steps]
+            rest = [others[number] for number in numbers if number in others]
+        said.sort()
+        return tuple([dstate for _, dstate in said]), rest
