@@ -208,7 +208,7 @@ def demand_reasons(experience, answer, wanted, bound):
 LONG = [pytest.param(first, first + 220, marks=pytest.mark.long) for first in range(20, 1120, 220)]
 
 
-@pytest.mark.parametrize("first, end", [(0, 20), *LONG])
+@pytest.mark.parametrize(("first", "end"), [(0, 20), *LONG])
 def test_verdicts_and_reasons(tmp_path, first, end, record_property):
     verdicts, tried, kinds, long = {}, 0, set(), end - first > 20
     for number in range(first, end):

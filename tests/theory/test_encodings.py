@@ -133,7 +133,8 @@ def test_no_body_weighs_or_counts_derived_atoms(file):
     in places.lp and noise.lp are of distinct atoms; those in runs.lp and lines.lp have no bound;
     query.lp, online/costs.lp, planar.lp and phases/counts.lp count facts; explore.lp
     sums facts, and atoms each of which is chosen; online/bound.lp counts new/1 as bound.lp does;
-    paper/topomap.lp sums a constant over facts; ends.lp is solved with --eq=0. Of check.lp nothing reaches clasp (test_check.py)."""
+    paper/topomap.lp sums a constant over facts; ends.lp is solved with --eq=0. Of check.lp nothing
+    reaches clasp (test_check.py)."""
     aggregates = []
 
     class Finder(ast.Transformer):
