@@ -47,14 +47,29 @@ def misread_json(experience: Experience, misread: Sequence[Misread]) -> list[dic
 def map_line(experience: Experience, found: Found) -> str:
     """A hypothesis in one line: what it disbelieves, its size, and the dstate after each step.
     The experience is the corrected one."""
-    return Texts(experience).line(found)
+    if not found.misread:
+        return Texts(experience).line(found)
+    world = experience.map_of(found.at)
+    size = (
+        len(world.stars),
+        len(world.links) // 2,
+        len(world.paths()),
+        world.genus(),
+        len(world.pending()),
+    )
+    way = " ".join(f"{place}.{slot}" for place, slot in found.at)
+    return words.disbelieved(experience, found.misread) + _line(size, way)
+
+
+def _line(size: tuple[int, int, int, int, int], way: str) -> str:
+    places, links, paths, genus, pending = size
+    return f"places {places}, links {links}, paths {paths}, genus {genus}, pending {pending}: {way}"
 
 
 class Texts:
     """The maps of one experience as text; what is the same in many of them is made once."""
 
     def __init__(self, experience: Experience):
-        """The experience is the corrected one, if views may be wrong."""
         self._experience = experience
         self._numbering = Numbering(experience)
         self._names: dict[DState, str] = {}  # of a dstate, in a line
@@ -71,7 +86,7 @@ class Texts:
         ]
 
     def line(self, found: Found) -> str:
-        """A hypothesis in one line: what it disbelieves, its size, and the dstate after each
+        """A hypothesis that disbelieves nothing in one line: its size, and the dstate after each
         step."""
         one = CompactMap(self._numbering, found.at)
         names = self._names
@@ -81,12 +96,14 @@ class Texts:
             for place, slot in found.at:
                 names[place, slot] = f"{place}.{slot}"
             way = " ".join([names[dstate] for dstate in found.at])
-        told = words.disbelieved(self._experience, found.misread) if found.misread else ""
-        return (
-            f"{told}places {len(one.places)}, links {len(one.link) // 2}, "
-            f"paths {one.number_of_paths()}, genus {one.genus()}, "
-            f"pending {one.number_of_pending()}: {way}"
+        size = (
+            len(one.places),
+            len(one.link) // 2,
+            one.number_of_paths(),
+            one.genus(),
+            one.number_of_pending(),
         )
+        return _line(size, way)
 
     def document(self, at: Sequence[DState]) -> str:
         """A hypothesis as JSON text: that of ``map_json``."""
@@ -151,10 +168,7 @@ class Report:
         """Write one map."""
         self.count += 1
         self.last = found
-        corrected, texts = self.experience, self._texts
-        if found.misread:
-            corrected = self.experience.corrected(found.misread)
-            texts = Texts(corrected)
+        corrected = self.experience.corrected(found.misread) if found.misread else self.experience
         real = False
         if self.truth:
             real = corrected.map_of(found.at).isomorphic(self.truth)
@@ -165,13 +179,17 @@ class Report:
                 more["misread"] = misread_json(self.experience, found.misread)
             if self.truth:
                 more["real"] = real
-            document = texts.document(found.at)
+            if found.misread:
+                document = json.dumps(map_json(corrected.map_of(found.at), found.at))
+            else:
+                document = self._texts.document(found.at)
             if more:
                 document = f"{document[:-1]}, {json.dumps(more)[1:]}"
             self.out.write((",\n" if self.count > 1 else "\n") + document)
         else:
             mark = " (the real map)" if real else ""
-            self.out.write(f"map {self.count}{mark}: {texts.line(found)}\n")
+            line = map_line(corrected, found) if found.misread else self._texts.line(found)
+            self.out.write(f"map {self.count}{mark}: {line}\n")
 
     def end(self, fault: str | None, nodes: int | None = None) -> None:
         """Write what the maps are, and whether they are all; ``nodes`` were searched. Where they

@@ -13,7 +13,8 @@ Number = int
 
 
 class Numbering:
-    """What all maps of one experience have in common."""
+    """What all maps of one experience have in common. Each step of these arrives at a gateway that
+    is seen there."""
 
     def __init__(self, experience: Experience):
         self.slots = slots = experience.slots
@@ -28,7 +29,7 @@ class Numbering:
         self.before: dict[Number, Number] = {}
         self.opposite: dict[Number, Number] = {}
         for place, star in enumerate(self.gateways):
-            self.before.update(zip(star, [star[-1], *star], strict=False))
+            self.before.update(zip(star, star[-1:] + star, strict=False))
             for slot in range(slots):
                 across = place * slots + (slot + slots // 2) % slots
                 self.opposite[place * slots + slot] = across
