@@ -147,20 +147,11 @@ def _solve_one(
 def _combined(args: argparse.Namespace) -> None:
     """Raises InputError if a preference or misreadings are asked for together with what cannot be
     combined with them."""
-    if args.circumscribe:
-        others = {
-            "--optimal": args.optimal,
-            "--minimal": args.minimal,
-            "--genus": args.genus,
-            "--noise": args.noise is not None,
-            "--encoding paper": args.encoding == "paper",
-        }
-        for name, asked in others.items():
-            if asked:
-                raise InputError(f"topomap solve: --circumscribe does not go with {name}")
-    if args.noise is None:
-        return
-    others = {
+    asked = {
+        "--optimal": args.optimal,
+        "--minimal": args.minimal,
+        "--genus": args.genus,
+        "--noise": args.noise is not None,
         "--by search": args.by == "search",
         "--encoding paper": args.encoding == "paper",
         "--jobs": (args.jobs or 1) > 1,
@@ -168,6 +159,12 @@ def _combined(args: argparse.Namespace) -> None:
         "--resume": args.resume,
         "--truth": args.truth,
     }
-    for name, asked in others.items():
-        if asked:
-            raise InputError(f"topomap solve: --noise does not go with {name}")
+    without = {
+        "--circumscribe": ("--optimal", "--minimal", "--genus", "--noise", "--encoding paper"),
+        "--noise": ("--by search", "--encoding paper", "--jobs", "--dask", "--resume", "--truth"),
+    }
+    given = {"--circumscribe": args.circumscribe, "--noise": args.noise is not None}
+    for option, others in without.items():
+        for other in others:
+            if given[option] and asked[other]:
+                raise InputError(f"topomap solve: {option} does not go with {other}")

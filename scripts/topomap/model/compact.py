@@ -76,24 +76,8 @@ class CompactMap:
     def genus(self, faces: int | None = None) -> int:
         """The genus by the Euler-Poincare formula; the number of faces, if it is known, need not
         be found again."""
-        faces = self.number_of_faces() if faces is None else faces
+        faces = len(self.faces()) if faces is None else faces
         return (2 - len(self.places) + len(self.link) // 2 - faces) // 2
-
-    def number_of_faces(self) -> int:
-        """How many faces there are."""
-        link, before = self.link, self._all.before
-        left, faces = set(link), 0 if link else 1
-        while left:
-            first = gateway = left.pop()
-            faces += 1
-            while True:
-                gateway = before[link[gateway]]
-                while gateway not in link:
-                    gateway = before[gateway]
-                if gateway == first:
-                    break
-                left.remove(gateway)
-        return faces
 
     def faces(self) -> list[list[Number]]:
         """Each face as the gateways its walk leaves by, as ``TopologicalMap.faces`` has them."""

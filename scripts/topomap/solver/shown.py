@@ -22,17 +22,14 @@ class Shown:
         """The dstate after each step, and the name and terms of each other atom."""
         numbers = [atom._rep for atom in atoms]
         steps, others = self._steps, self._others
-        try:
-            said = [steps[number] for number in numbers]
-            rest = []
-        except KeyError:
-            for atom, number in zip(atoms, numbers, strict=True):
-                if atom.name == "at":
-                    step, place, slot = (term.number for term in atom.arguments)
-                    steps[number] = step, (place, slot)
-                else:
-                    others[number] = atom.name, atom.arguments
-            said = [steps[number] for number in numbers if number in steps]
-            rest = [others[number] for number in numbers if number in others]
-        said.sort()
+        for atom, number in zip(atoms, numbers, strict=True):
+            if number in steps or number in others:
+                continue
+            if atom.name == "at":
+                step, place, slot = (term.number for term in atom.arguments)
+                steps[number] = step, (place, slot)
+            else:
+                others[number] = atom.name, atom.arguments
+        said = sorted([steps[number] for number in numbers if number in steps])
+        rest = [others[number] for number in numbers if number in others]
         return tuple([dstate for _, dstate in said]), rest
