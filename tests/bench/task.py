@@ -108,7 +108,7 @@ def table(task: Task) -> int:
 
 def command(_: Task) -> int:
     """The same, as ``topomap table`` counts them."""
-    return sum(len(figure4.differences(row)) for row in figure4.rows(os.cpu_count() or 1))
+    return sum(len(figure4.differences(row)) for row in figure4.rows(os.cpu_count() or 1, Watch()))
 
 
 def counted_by_search(task: Task) -> int:
