@@ -15,6 +15,7 @@ from topomap.model.query import Query
 from topomap.model.words import number
 from topomap.runtime.status import INTERRUPT
 from topomap.runtime.watch import Attempt, Stopped, Watch
+from topomap.solver.choice import AUTO
 from topomap.solver.enumeration import proved_or_last
 
 CLOSED = "closed"  # why an answer is partial that was not wanted any more
@@ -60,13 +61,14 @@ class Answer(Sequence[Map]):
         coming: Generator[Found, None, None],
         limit: int | None = None,
         watch: Watch | None = None,
+        waits: bool = True,
     ):
-        """The maps that are ``coming``, at most ``limit`` of them. The time limit of the ``watch``
-        waits while the caller has control; with None no time limit waits, as in a command."""
+        """The maps that are ``coming``, at most ``limit`` of them, found under a ``watch``. Its time
+        limit waits while the caller has control, unless it is that of a command, which has it."""
         self.experience, self.query = experience, query
-        self._watch = watch
+        self._watch = watch or Watch()
         self._known = _Known(experience, query)
-        self._search = _search(self._known, coming, limit, watch)
+        self._search = _search(self._known, coming, limit, self._watch if waits else None)
         self._one_at_a_time = threading.RLock()
 
     def stream(self) -> Iterator[Map]:
@@ -91,8 +93,7 @@ class Answer(Sequence[Map]):
     def close(self) -> None:
         """End the search, also when another thread waits for it. The maps that were found until
         then are kept; ``fault`` says "closed" if there may be others."""
-        if self._watch:
-            self._watch.ended = CLOSED
+        self._watch.ended = CLOSED
         with self._one_at_a_time:
             self._search.close()
             if self._known.fault == UNFINISHED:
@@ -183,6 +184,19 @@ class Answer(Sequence[Map]):
         """What was minimised, most important first; empty if nothing was, or there is no map."""
         last = self._settled().last
         return () if last is None else last.cost
+
+    @property
+    def by(self) -> str:
+        """Which way gave the maps: "clingo", or "search"; "auto" as long as none has begun."""
+        self._settled()
+        return self._watch.by or AUTO
+
+    @property
+    def least(self) -> tuple[int, ...] | None:
+        """What each map costs at least, as far as it is proved, if something was minimised; or
+        None."""
+        known = self._settled()
+        return self.cost if known.last and known.last.proved else self._watch.least
 
     def __repr__(self) -> str:
         """What is known by now; nothing is looked for."""

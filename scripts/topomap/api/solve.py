@@ -25,7 +25,7 @@ def solve(
     bound: int | None = None,
     horizon: int | None = None,
     noise: int | None = None,
-    by: str = "clingo",
+    by: str = "auto",
     encoding: str = "work",
     limit: int | None = None,
     timeout: float | None = None,
@@ -45,7 +45,8 @@ def solve(
         bound: the most places that a map may have.
         horizon: the last step that counts.
         noise: how many views may be wrong, as few as can be.
-        by: ``clingo``, or ``search``, the paper's own search.
+        by: ``auto``: the way that suits, by how much work there is to do, never by time;
+            ``clingo``, or ``search``, the paper's own search.
         encoding: ``work``, or ``paper``, the rules as the paper states them (slow).
         limit: stop after so many maps.
         timeout: seconds of search after which it stops: they begin with the first map that is
@@ -86,7 +87,9 @@ def solve(
     def coming() -> Generator[Found, None, None]:
         watch.deadline = Deadline(timeout)
         with crew_of(jobs) as crew:
-            yield from every(experience, query, watch, by, optimal, None, crew, circumscribe)
+            yield from every(
+                experience, query, watch, by, optimal, None, crew, circumscribe, limit
+            )
 
     return Answer(experience, query, coming(), limit, watch)
 
@@ -96,7 +99,7 @@ def solve_under(
     experience: Experience,
     query: Query,
     *,
-    by: str = "clingo",
+    by: str = "auto",
     optimal: bool = False,
     circumscribe: bool = False,
     limit: int | None = None,
@@ -105,5 +108,5 @@ def solve_under(
 ) -> Answer:
     """The same of the maps of a query, under the watch of a command, which may have a journal of
     the work and a crew for it."""
-    coming = every(experience, query, watch, by, optimal, journal, crew, circumscribe)
-    return Answer(experience, query, coming, limit)
+    coming = every(experience, query, watch, by, optimal, journal, crew, circumscribe, limit)
+    return Answer(experience, query, coming, limit, watch, waits=False)

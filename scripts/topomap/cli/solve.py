@@ -51,9 +51,10 @@ def add(group: Any) -> None:
     )
     made.add_argument(
         "--by",
-        choices=("clingo", "search"),
-        default="clingo",
-        help="how to find the maps: clingo, or the search in Python (default: %(default)s)",
+        choices=("auto", "clingo", "search"),
+        default="auto",
+        help="how to find the maps: clingo, the search in Python, or whichever suits, which is decided "
+        "by how much work there is, never by time (default: %(default)s)",
     )
     add_query(made, PARTS)
     add_crew(made, "; not with --optimal, --circumscribe, --minimal or --genus")
@@ -140,7 +141,7 @@ def _solve_one(
             for one in answer.stream():
                 report.add(one.found)
         fault = attempt.fault or answer.fault
-        report.end(fault)
+        report.end(fault, by=answer.by, least=answer.least)
     return fault, bool(report.count)
 
 

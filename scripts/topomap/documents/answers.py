@@ -191,16 +191,27 @@ class Report:
             line = map_line(corrected, found) if found.misread else self._texts.line(found)
             self.out.write(f"map {self.count}{mark}: {line}\n")
 
-    def end(self, fault: str | None, nodes: int | None = None) -> None:
+    def end(
+        self,
+        fault: str | None,
+        nodes: int | None = None,
+        by: str | None = None,
+        least: tuple[int, ...] | None = None,
+    ) -> None:
         """Write what the maps are, and whether they are all; ``nodes`` were searched. Where they
-        may not be all, nothing is said of those that were not found."""
+        may not be all, nothing is said of those that were not found, but what each map costs at
+        ``least``, if that is proved. ``by`` is the way that gave them."""
         if self.as_json:
             kind = self.last.kind if self.count or not fault else None
             tail: dict[str, Any] = {"kind": kind, "count": self.count}
             if self.last.cost:
                 tail |= {"cost": self.last.cost, "proved": self.last.proved}
+                if not self.last.proved and least:
+                    tail["least"] = least
             if nodes is not None:
                 tail["nodes"] = nodes
+            if by is not None:
+                tail["by"] = by
             tail |= formats.ended(fault)
             self.out.write("\n], " + json.dumps(tail)[1:] + "\n")
             return
@@ -212,10 +223,14 @@ class Report:
             line += f", cost {' '.join(map(str, self.last.cost))}"
         if not self.last.proved:
             line += f", {UNPROVED}"
+            if least:
+                line += f", proved to cost at least {' '.join(map(str, least))}"
         elif fault and self.count:
             line += ", more may exist"
         if nodes is not None:
             line += f", {nodes:,} nodes searched"
         if self.truth and not self.real and (self.count or not fault):
             line += f", the real map is not among {'those found so far' if fault else 'them'}"
+        if by is not None:
+            line += f", by {by}"
         self.out.write(line + (f"; partial: {fault}\n" if fault else "\n"))

@@ -121,7 +121,8 @@ class Signals:
 
 class Watch:
     """What a search looks at between two answers: its deadline, and the signals and the
-    progress line of the command that began it, if one did. ``found`` counts the maps.
+    progress line of the command that began it, if one did. ``found`` counts the maps; ``by`` says
+    which way gives them, and ``least`` what each of them costs at least, as far as it is proved.
 
     Without these it touches nothing of the process, and so goes with any thread. Another thread
     ends the search by saying in ``ended`` why.
@@ -134,6 +135,8 @@ class Watch:
         signals: Signals | None = None,
     ):
         self.found = 0
+        self.by: str | None = None
+        self.least: tuple[int, ...] | None = None
         self.ended: str | None = None
         self.deadline = Deadline(timeout)
         self._progress = progress or Progress(quiet=True)

@@ -20,8 +20,8 @@ RULES = ("view", "landmark", "marker", "twice", "circular", "planarity", "perpen
 
 
 class Link(NamedTuple):
-    """What a link changed: its gateways, the paths that it made one, and what the faces
-    and the places of the longer path were before."""
+    """What a link changed: its gateways, the paths that it made one, and what the faces, and
+    the places and the crossings of the two paths were before."""
 
     out: int
     arrival: int
@@ -30,6 +30,8 @@ class Link(NamedTuple):
     faces: tuple[Face, ...]
     path_places: int
     other_places: int
+    path_meets: int
+    other_meets: int
 
 
 class Hypothesis:
@@ -38,7 +40,7 @@ class Hypothesis:
     ``links`` joins gateways, both ways. ``faces`` holds of each face the pending gateways,
     in the order of its walk (the paper, section III.B): a link inside a face splits it; one
     between two faces, which planarity forbids, makes them one. ``paths`` holds of each path
-    the set of its places, as bits.
+    the set of its places, as bits; ``meets`` the set of the paths that it shares a place with.
 
     With ``planar``, ``bound`` and ``perpendicular``, children that break these are dropped.
     """
@@ -63,20 +65,32 @@ class Hypothesis:
                 star = frozenset((other - slot) % self.slots for other in view)
                 self.views[first + slot] = numbers.setdefault((star, landmarks), len(numbers))
         self.marker = experience.marker()
+        self.steps = 0  # that were entered
         self.at = [0]
         self.links: dict[int, int] = {}
         self.faces: tuple[Face, ...] = (self.stars[0],)
         self.paths: dict[int, int] = {}
+        self.meets: dict[int, int] = {}
+        self._axis = {
+            gateway: gateway - slot + slot % (self.slots // 2)
+            for star in self.stars
+            for gateway in star
+            for slot in [gateway % self.slots]
+        }
+        # Of each place, its axes, and which others each of them meets there.
+        self._axes = [
+            [
+                (axis, sum(1 << other for other in axes if other != axis))
+                for axes in [{self._axis[gateway] for gateway in star}]
+                for axis in axes
+            ]
+            for star in self.stars
+        ]
         self.places = 0
         self.matches = 0  # links between known places: m in the paper's equation (1)
         self._joined: dict[int, int] = {}  # an axis to another one of its path
         self._trail: list[Link | None] = []
         self._add_place(0)
-
-    @property
-    def steps(self) -> int:
-        """How many steps were entered."""
-        return len(self._trail)
 
     @property
     def dstates(self) -> tuple[DState, ...]:
@@ -113,12 +127,12 @@ class Hypothesis:
 
     def square(self) -> bool:
         """The map is qualitatively perpendicular (the paper, section IV)."""
-        return all(self._square(places, (path,)) for path, places in self.paths.items())
+        return all(self._square(path, places) for path, places in self.paths.items())
 
-    def _square(self, places: int, own: tuple[int, ...]) -> bool:
-        """A path of these places, made of the paths ``own``, meets no other path twice,
-        and at two places no two paths that meet."""
-        met = [(places & of, of) for path, of in self.paths.items() if path not in own]
+    def _square(self, path: int, places: int) -> bool:
+        """The path of these places meets no other path twice, and at two places no two paths
+        that meet."""
+        met = [(places & of, of) for other, of in self.paths.items() if other != path]
         met = [(common, of) for common, of in met if common]
         if any(common & (common - 1) for common, _ in met):
             return False
@@ -131,15 +145,17 @@ class Hypothesis:
 
     def path(self, gateway: int) -> int:
         """The path through a gateway and its opposite one, named by such an axis of it."""
-        place, slot = divmod(gateway, self.slots)
-        axis = place * self.slots + slot % (self.slots // 2)
-        while axis in self._joined:
-            axis = self._joined[axis]
+        axis, joined = self._axis[gateway], self._joined
+        while axis in joined:
+            axis = joined[axis]
         return axis
 
     def face(self, gateway: int) -> Face:
         """The face on which a pending gateway lies."""
-        return next(face for face in self.faces if gateway in face)
+        for face in self.faces:
+            if gateway in face:
+                return face
+        raise KeyError(gateway)
 
     def fitting(self, gateways: Face) -> list[int]:
         """Those gateways whose view is what the next step sees."""
@@ -198,67 +214,95 @@ class Hypothesis:
     def _joins(self, out: int, arrival: int) -> bool:
         """Whether a link between the gateways respects the path axiom, and ``perpendicular``:
         it makes the two paths one, so they are two and share no place."""
-        paths = self.path(out), self.path(arrival)
-        places, more = (self.paths[path] for path in paths)
-        return not places & more and (not self.perpendicular or self._square(places | more, paths))
+        path, other = self.path(out), self.path(arrival)
+        if self.paths[path] & self.paths[other]:
+            return False
+        return not self.perpendicular or self._squares(self.meets[path], self.meets[other])
+
+    def _squares(self, meets: int, others: int) -> bool:
+        """Whether a perpendicular map stays so when two paths become one that meet these paths:
+        they share no place, so whatever meets both would meet the new one twice; and if two that
+        meet each other meet one of them each, there would be a triangle."""
+        if meets & others:
+            return False
+        return not any(self.meets[met] & others for met in numbers(meets))
 
     def enter(self, arrival: int) -> None:
         """Go one step on, to a gateway that is one of the children."""
         out = self.out()
-        self.at.append(arrival)
         self._trail.append(None if out in self.links else self._add_link(out, arrival))
+        self.at.append(arrival)
+        self.steps += 1
 
     def _add_link(self, out: int, arrival: int) -> Link:
-        place = arrival // self.slots
+        place, step = arrival // self.slots, self.steps + 1
         faces = self.faces
         here = self.face(out)
-        rest = _after(here, out)
+        rest = after(here, out)
         others = [face for face in faces if face is not here]
-        if place == self.steps + 1:
+        if place == step:
             self._add_place(place)
-            self.faces = (_after(self.stars[place], arrival) + rest, *others)
+            self.faces = (after(self.stars[place], arrival) + rest, *others)
         elif arrival in rest:
             middle = rest.index(arrival)
             self.faces = (rest[:middle], rest[middle + 1 :], *others)
         else:
             there = self.face(arrival)
             others.remove(there)
-            self.faces = (rest + _after(there, arrival), *others)
-        self.matches += place != self.steps + 1
+            self.faces = (rest + after(there, arrival), *others)
+        self.matches += place != step
         self.links[out], self.links[arrival] = arrival, out
         path, other = self.path(out), self.path(arrival)
-        link = Link(out, arrival, path, other, faces, self.paths[path], self.paths[other])
+        places, more = self.paths[path], self.paths.pop(other)
+        meets, met = self.meets[path], self.meets.pop(other)
         self._joined[other] = path
-        self.paths[path] |= self.paths.pop(other)
-        return link
+        self.paths[path] = places | more
+        self.meets[path] = meets | met
+        both = (1 << path) | (1 << other)
+        for crossing in numbers(met & ~meets):
+            self.meets[crossing] ^= both
+        for crossing in numbers(met & meets):
+            self.meets[crossing] ^= 1 << other
+        return Link(out, arrival, path, other, faces, places, more, meets, met)
 
     def undo(self) -> None:
         """Go one step back."""
         link = self._trail.pop()
         arrival = self.at.pop()
+        step, self.steps = self.steps, self.steps - 1
         if link is None:
             return
         del self.links[link.out], self.links[arrival], self._joined[link.other]
         self.paths[link.path], self.paths[link.other] = link.path_places, link.other_places
+        self.meets[link.path], self.meets[link.other] = link.path_meets, link.other_meets
+        both = (1 << link.path) | (1 << link.other)
+        for crossing in numbers(link.other_meets & ~link.path_meets):
+            self.meets[crossing] ^= both
+        for crossing in numbers(link.other_meets & link.path_meets):
+            self.meets[crossing] ^= 1 << link.other
         self.faces = link.faces
-        if arrival // self.slots == self.steps + 1:
-            self._remove_place(self.steps + 1)
+        if arrival // self.slots == step:
+            self._remove_place(step)
         else:
             self.matches -= 1
 
     def _add_place(self, place: int) -> None:
         self.places += 1
-        for gateway in self.stars[place]:
-            self.paths[self.path(gateway)] = 1 << place
+        for axis, others in self._axes[place]:
+            self.paths[axis] = 1 << place
+            self.meets[axis] = others
 
     def _remove_place(self, place: int) -> None:
         self.places -= 1
-        for gateway in self.stars[place]:
-            self.paths.pop(self.path(gateway), None)
+        for axis, _ in self._axes[place]:
+            del self.paths[axis], self.meets[axis]
 
     def goto(self, dstates: Sequence[DState]) -> None:
         """Go to another node of the tree, by way of what the two have in common."""
-        at = [place * self.slots + slot for place, slot in dstates]
+        self.go([place * self.slots + slot for place, slot in dstates])
+
+    def go(self, at: Sequence[int]) -> None:
+        """The same, to the node with these gateways."""
         pairs = enumerate(zip(self.at, at, strict=False))
         common = next((step for step, (a, b) in pairs if a != b), min(len(self.at), len(at)))
         while len(self.at) > common:
@@ -267,7 +311,15 @@ class Hypothesis:
             self.enter(arrival)
 
 
-def _after(face: Face, gateway: int) -> Face:
+def after(face: Face, gateway: int) -> Face:
     """The other gateways of a face, in the order of its walk from this one on."""
     index = face.index(gateway)
     return face[index + 1 :] + face[:index]
+
+
+def numbers(bits: int) -> Iterator[int]:
+    """The numbers that a set holds as bits."""
+    while bits:
+        one = bits & -bits
+        yield one.bit_length() - 1
+        bits ^= one

@@ -6,7 +6,6 @@ it moves; what is to be known of a node is read while it stands there.
 
 import heapq
 from collections.abc import Collection, Iterator, Sequence
-from dataclasses import replace
 from itertools import groupby
 from operator import itemgetter
 
@@ -15,9 +14,9 @@ from topomap.model.found import Cube, Found
 from topomap.model.query import Query
 from topomap.model.vocabulary import PRUNING
 from topomap.runtime.watch import Watch, spared
+from topomap.search.descent import OFTEN, Descent
 from topomap.search.hypothesis import Hypothesis
 
-OFTEN = 500  # nodes between two looks at the clock
 
 
 def root(experience: Experience, query: Query) -> Hypothesis:
@@ -136,40 +135,4 @@ def hypotheses(
     cubes: Sequence[Cube] | None = None,
 ) -> Iterator[Found | None]:
     """What ``solver.hypotheses`` gives, in the order of the tree."""
-    node = root(experience, query)
-    best: list[Found] = []
-    for cube in cubes or [((0, 0),)]:
-        node.goto(cube)
-        watch.tick()
-        for _ in depth_first(node, watch):
-            if node.steps < node.experience.steps:
-                continue
-            cost = _cost(node, query)
-            if (best and cost > best[0].cost) or not _holds(node, query.parts):
-                continue
-            watch.found += 1
-            found = Found(node.dstates, kind or query.kind, cost, not query.optimizes)
-            if query.optimizes:
-                best = [*best, found] if best and cost == best[0].cost else [found]
-            if len(best) < 2:
-                yield found
-        if cubes is not None:
-            yield None
-    for found in best:
-        yield replace(found, proved=True)
-
-
-def _cost(node: Hypothesis, query: Query) -> tuple[int, ...]:
-    """What the query minimises, most important first."""
-    genus = (node.genus,) if "genus" in query.parts else ()
-    return genus + (node.cost if "minimal" in query.parts else ())
-
-
-def _holds(node: Hypothesis, parts: Collection[str]) -> bool:
-    """Whether the map has the properties that do not prune the tree."""
-    return (
-        ("euler" not in parts or node.genus == 0)
-        and ("closed" not in parts or node.closed())
-        and ("travelled" not in parts or node.travelled())
-        and ("boundary" not in parts or node.map.boundaries_consistent())
-    )
+    return Descent(experience, query, kind).found(watch, cubes)

@@ -1,5 +1,5 @@
-"""Every map of a query, by either way: at once, or branch by branch of the tree, each branch a unit
-of a journal, alone or shared out."""
+"""Every map of a query, by the way that suits or by one of the two: at once, or branch by branch of
+the tree, each branch a unit of a journal, alone or shared out."""
 
 from array import array
 from collections.abc import Generator, Iterator
@@ -13,36 +13,62 @@ from topomap.runtime.journal import Journal
 from topomap.runtime.limits import LARGEST
 from topomap.runtime.watch import Attempt, Stopped, Watch
 from topomap.search import traversal
-from topomap.solver import solving
+from topomap.solver import choice, solving
+from topomap.solver.choice import AUTO, CLINGO, Trial
 from topomap.solver.circumscription import circumscribed
 from topomap.solver.share import ALONE, Crew
 from topomap.solver.solving import Way
 
-WAYS: dict[str, Way] = {"clingo": solving.hypotheses, "search": traversal.hypotheses}
+WAYS: dict[str, Way] = {
+    AUTO: choice.hypotheses,
+    CLINGO: solving.hypotheses,
+    choice.SEARCH: traversal.hypotheses,
+}
 
 
 def every(
     experience: Experience,
     query: Query,
     watch: Watch,
-    by: str = "clingo",
+    by: str = AUTO,
     optimal: bool = False,
     journal: Journal | None = None,
     crew: Crew = ALONE,
     circumscribe: bool = False,
+    limit: int | None = None,
 ) -> Generator[Found, None, None]:
     """The maps of a query, or the best of them if ``optimal`` (better and better ones come
-    before those that are proved), or the circumscribed ones; ``by`` is one of WAYS. If there is a
-    journal or a crew, and all maps are asked for, branch by branch of the tree. Raises Stopped."""
+    before those that are proved), or the circumscribed ones; ``by`` is one of WAYS, and ``watch.by``
+    says by which they are given. If there is a journal or a crew, and all maps are asked for, branch
+    by branch of the tree. More than ``limit`` maps will not be taken. Raises Stopped."""
     journal = journal or Journal()
-    way = WAYS[by]
+    watch.by = CLINGO if by == AUTO else by
     if circumscribe:
-        yield from circumscribed(experience, query, watch, by)
+        yield from circumscribed(experience, query, watch, watch.by)
     elif optimal:
-        yield from filter(None, solving.best(experience, query, watch, way))
-    elif query.optimizes or (crew is ALONE and not journal.kept):
-        yield from filter(None, way(experience, query, watch))
+        yield from filter(None, solving.best(experience, query, watch, WAYS[by]))
+    elif query.optimizes:
+        yield from filter(None, WAYS[by](experience, query, watch))
+    elif by == AUTO:
+        trial = Trial(experience, query, watch, limit=limit)
+        watch.by = trial.by
+        if trial.whole:
+            yield from trial.maps
+            return
+        some = False
+        try:
+            for found in every(experience, query, watch, trial.by, False, journal, crew):
+                some = True
+                yield found
+        except Stopped:
+            if not some and trial.maps:
+                watch.by = choice.SEARCH
+                yield from trial.maps
+            raise
+    elif crew is ALONE and not journal.kept:
+        yield from filter(None, WAYS[by](experience, query, watch))
     else:
+        way = WAYS[by]
         branches, depth = traversal.cubes(experience, query)
         done = 0
         known: set[Cube] = set()  # the maps of the branch that was cut

@@ -1,0 +1,163 @@
+"""Depth-first search for the maps of a query, which looks ahead, and tells how large its tree is."""
+
+from collections.abc import Callable, Collection, Iterator, Sequence
+from dataclasses import replace
+
+from topomap.model.experience import Experience
+from topomap.model.found import Cube, Found
+from topomap.model.query import Query
+from topomap.runtime.watch import Watch, spared
+from topomap.search.lookahead import LookAhead
+
+OFTEN = 500  # nodes between two looks at the clock, and the first after which one is told
+Cost = tuple[int, ...]
+
+
+class TooLarge(Exception):
+    """The search was ended because of how large its tree is."""
+
+
+class Descent:
+    """A search for the maps of a query.
+
+    ``nodes`` were visited, ``maps`` were found, and ``passed`` is the share of the tree that this
+    is if the children of each node have trees of one size: by this, ``size`` tells how many
+    nodes there are, and ``expected`` how many maps. ``heed`` is told after OFTEN nodes, twice as
+    many, and so on; it may raise TooLarge.
+
+    If the query minimises, nodes below which each map costs more than the best one so far are left
+    (``LookAhead.least``); no map costs less than ``least``.
+    """
+
+    def __init__(
+        self,
+        experience: Experience,
+        query: Query,
+        kind: str | None = None,
+        heed: Callable[["Descent"], None] | None = None,
+    ):
+        if query.horizon is not None:
+            experience = experience.cut(query.horizon)
+        self.query = query
+        self.node = LookAhead(experience, query)
+        self.nodes = self.maps = 0
+        self.passed = 0.0
+        self._kind = kind or query.kind
+        self._heed, self._next = heed, OFTEN
+        self._watch: Watch | None = None
+        self._best: list[Found] = []
+        # Of each node on the way to the one where the search stands: its children that are to be
+        # visited, the share of the tree below each, and what a map below them costs at least.
+        self._way: list[tuple[list[int], float, Cost]] = []
+
+    @property
+    def size(self) -> float:
+        """How many nodes the tree has, as far as that can be told."""
+        return self.nodes / self.passed if self.passed else float("inf")
+
+    @property
+    def expected(self) -> float:
+        """How many maps there are, as far as that can be told."""
+        return self.maps / self.passed if self.passed else float("inf")
+
+    @property
+    def least(self) -> Cost | None:
+        """What each map costs at least, as far as it is proved; None if nothing is minimised, or
+        there is no map."""
+        if not self.query.optimizes:
+            return None
+        costs = [cost for children, _, cost in self._way if children]
+        costs += [self._cost()] if self._way else []
+        costs += [one.cost for one in self._best[:1]]
+        return min(costs, default=None)
+
+    @spared
+    def found(
+        self, watch: Watch | None = None, cubes: Sequence[Cube] | None = None
+    ) -> Iterator[Found | None]:
+        """What ``solver.hypotheses`` gives, in the order of the tree."""
+        self._watch = watch
+        for cube in cubes or [((0, 0),)]:
+            self.node.goto(cube)
+            if watch:
+                watch.tick()
+            yield from self._below()
+            if cubes is not None:
+                yield None
+        for one in self._best:
+            yield replace(one, proved=True)
+
+    def _below(self) -> Iterator[Found]:
+        """The maps at the node where the search stands, and below it; better and better ones
+        if the query minimises."""
+        node, steps, way = self.node, self.node.experience.steps, self._way
+        if node.steps == steps:
+            yield from self._here()
+            return
+        minimises = self.query.optimizes
+        way.append(self._open(1.0))
+        while way:
+            children, share, _ = way[-1]
+            if not children:
+                way.pop()
+                if way:
+                    node.undo()
+                continue
+            node.enter(children.pop())
+            self.nodes += 1
+            if self.nodes % OFTEN == 0:
+                if self._watch:
+                    self._watch.tick()
+                if self.nodes == self._next and self._heed:
+                    self._next *= 2
+                    self._heed(self)
+            if node.steps == steps:
+                yield from self._here()
+            elif not (minimises and self._best and self._cost() > self._best[0].cost):
+                below = self._open(share)
+                if below[0]:
+                    way.append(below)
+                    continue
+            self.passed += share
+            node.undo()
+
+    def _open(self, share: float) -> tuple[list[int], float, Cost]:
+        """The children of the node where the search stands, the first one last, and what is to be
+        known of them; the node has so large a share of the tree."""
+        children = self.node.children()[::-1]
+        return children, share / max(1, len(children)), self._cost()
+
+    def _cost(self) -> Cost:
+        """What the query minimises of the maps below the node, most important first, at least."""
+        if not self.query.optimizes:
+            return ()
+        genus = (self.node.genus,) if "genus" in self.query.parts else ()
+        return genus + (self.node.least() if "minimal" in self.query.parts else ())
+
+    def _here(self) -> Iterator[Found]:
+        """The map of the node where the search stands, if it is one of the query, and, where it
+        minimises, better than those before."""
+        node, best = self.node, self._best
+        cost = self._cost()
+        if (best and cost > best[0].cost) or not holds(node, self.query.parts):
+            return
+        self.maps += 1
+        if self._watch:
+            self._watch.found += 1
+        one = Found(node.dstates, self._kind, cost, not self.query.optimizes)
+        if self.query.optimizes:
+            if best and cost == best[0].cost:
+                best.append(one)
+                return
+            best[:] = [one]
+        yield one
+
+
+def holds(node: LookAhead, parts: Collection[str]) -> bool:
+    """Whether a map has the properties that are only known of the whole."""
+    return (
+        ("euler" not in parts or node.genus == 0)
+        and ("closed" not in parts or node.closed())
+        and ("travelled" not in parts or node.travelled())
+        and ("boundary" not in parts or node.map.boundaries_consistent())
+    )

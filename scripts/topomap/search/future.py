@@ -1,0 +1,202 @@
+"""What the steps to come can still do, worked out once for an exploration: when a gateway of a kind
+can last be linked, and which visits can be of one place.
+
+All of it is necessary only: what is ruled out here is in no map; what is not may be in none either.
+"""
+
+from collections import Counter, defaultdict
+
+from topomap.model.experience import Experience
+
+Pair = tuple[int, int, int]  # visits T < U, and how many slots clockwise of T's gateway U's is
+MOST_FACES = 100_000  # that are remembered
+MOST_PAIRS = 100_000  # of visits: of more, each is taken to be possible
+
+
+class Future:
+    """What is to come in an exploration.
+
+    A gateway is the number ``step * slots + slot``, as if each step had made a new place; its
+    ``kind`` is what is seen from it. Step T leaves by a gateway of kind ``out[T]`` and arrives
+    at one of kind ``arrival[T]``.
+    """
+
+    def __init__(self, experience: Experience, kinds: dict[int, int]):
+        self.experience, self.slots, self.kinds = experience, experience.slots, kinds
+        self.turns = [0, *(turn % self.slots for turn in experience.turns)]
+        steps = range(1, experience.steps + 1)
+        self.out = [0] + [kinds[(t - 1) * self.slots + self.turns[t]] for t in steps]
+        self.arrival = [kinds[t * self.slots] for t in range(experience.steps + 1)]
+        known = self._retraced()
+        number = max(kinds.values()) + 1
+        # Of each kind, the steps that can link a gateway of it, from the last one; a step that
+        # links two of them stands there twice. And those that leave by one.
+        self.ends: list[list[int]] = [[] for _ in range(number)]
+        self.leaving: list[list[int]] = [[] for _ in range(number)]
+        for step in reversed(steps):
+            if step not in known:
+                self.ends[self.out[step]].append(step)
+                self.ends[self.arrival[step]].append(step)
+                self.leaving[self.out[step]].append(step)
+        # Of a place that a step makes, the kinds of its gateways but for the one of arrival, and
+        # how many there are of each; and the last step after which all of them can be linked.
+        self.kinds_of: list[list[tuple[int, int]]] = []
+        self.place_by: list[int] = []
+        # After each step, how many ends of each kind are still to come.
+        self.left = [[0] * number]
+        for step in reversed(steps):
+            self.left.append([*self.left[-1]])
+            if step not in known:
+                self.left[-1][self.out[step]] += 1
+                self.left[-1][self.arrival[step]] += 1
+        self.left.reverse()
+        self._in_time: dict[tuple[int, ...], int] = {}
+        self.pairs: int | None = None  # of visits that can be of one place, if these are known
+        self._fits = self._masks()
+        self._ends_at = [self._mask(slot) for slot in range(self.slots)]
+        for step, view in enumerate(experience.views):
+            others = [step * self.slots + slot for slot in sorted(view) if slot]
+            many = Counter(kinds[gateway] for gateway in others)
+            many[self.arrival[step]] += 0
+            self.kinds_of.append([*many.items()])
+            fitting = self.fitting(step, 0)
+            ends = (self.last_at(gateway, fitting) for gateway in others)
+            self.place_by.append(min(ends, default=experience.steps))
+
+    def last(self, kind: int, many: int) -> int:
+        """The last step after which so many gateways of a kind can still be linked: the steps to
+        come have enough ends of the kind."""
+        ends = self.ends[kind]
+        return ends[many - 1] - 1 if many <= len(ends) else -1
+
+    def last_of_face(self, face: tuple[int, ...]) -> int:
+        """The last step after which all pending gateways of a face of a planar map can still be
+        linked: some step leaves by one of them, and from it on there are enough ends of each
+        kind. (It cannot be entered otherwise, and a link joins two gateways of one face.)"""
+        known = self._in_time.get(face)
+        if known is None:
+            many: dict[int, int] = defaultdict(int)
+            for gateway in face:
+                many[self.kinds[gateway]] += 1
+            enter = min(self.last(kind, number) + 1 for kind, number in many.items())
+            if len(self._in_time) > MOST_FACES:
+                self._in_time.clear()
+            entries = (next((s for s in self.leaving[kind] if s <= enter), 0) for kind in many)
+            known = self._in_time[face] = max(entries) - 1
+        return known
+
+    def fitting(self, step: int, slot: int) -> int:
+        """Which visits can be of one place with that of a step, which stood at this slot of it: as
+        bits ``T * slots + S``, for visit T at slot S."""
+        return self._fits[step][slot] if self._fits else -1
+
+    def last_at(self, gateway: int, fitting: int) -> int:
+        """The last step after which a gateway of a place can still be linked, if only
+        these visits can be there."""
+        arrive, leave = self._ends_at[gateway % self.slots]
+        arrival = ((fitting & arrive).bit_length() - 1) // self.slots
+        before = ((fitting & leave).bit_length() - 1) // self.slots
+        return max(arrival - 1, before)
+
+    def _mask(self, slot: int) -> tuple[int, int]:
+        """The visits that arrive by a slot, and those after which a step leaves by it."""
+        arrive = leave = 0
+        for step in range(1, self.experience.steps + 1):
+            arrive |= 1 << (step * self.slots + slot)
+            leave |= 1 << ((step - 1) * self.slots + (slot - self.turns[step]) % self.slots)
+        return arrive, leave
+
+    def _retraced(self) -> set[int]:
+        """The steps that go back by the way that was come, and so link nothing in any map."""
+        known = set()
+        ways: list[tuple[int, int]] = []  # the turn of each step, and the one that would go back
+        back = -1
+        for step, turn in enumerate(self.turns[1:], 1):
+            if ways and turn == back:
+                known.add(step)
+                before, back = ways.pop()
+                back = (back - before) % self.slots if ways else -1
+            else:
+                ways.append((turn, back))
+                back = 0
+        return known
+
+    def _masks(self) -> list[list[int]]:
+        """Of each visit and slot, the visits that can be of one place with it."""
+        pairs = self._pairs()
+        if pairs is None:
+            return []
+        self.pairs = len(pairs)
+        slots = self.slots
+        fits: list[list[tuple[int, int]]] = [[] for _ in self.arrival]
+        for one, other, apart in pairs:
+            fits[one].append((other, apart))
+            fits[other].append((one, -apart))
+        masks = []
+        for visit, others in enumerate(fits):
+            masks.append([1 << (visit * slots + slot) for slot in range(slots)])
+            for other, apart in others:
+                for slot in range(slots):
+                    masks[-1][slot] |= 1 << (other * slots + (slot + apart) % slots)
+        return masks
+
+    def _pairs(self) -> set[Pair] | None:
+        """The pairs of visits that can be of one place: the same is seen there, no run of straight
+        steps holds both (the path axiom), and what follows of them is possible: if they left by
+        one gateway, or came by one, or one left by that by which the other came, the visits at the
+        other ends of these ways are of one place too."""
+        by_kind: dict[int, list[int]] = defaultdict(list)
+        for gateway, kind in self.kinds.items():
+            by_kind[kind].append(gateway)
+        looks = [by_kind[kind] for kind in self.arrival]
+        if sum(map(len, looks)) > 2 * MOST_PAIRS:
+            return None
+        slots, turns = self.slots, self.turns
+        run, runs = [0], 0
+        for turn in turns[2:]:
+            runs += turn != slots // 2
+            run.append(runs)
+        # The run by which a visit was reached, and the one by which it was left, are all of its.
+        of = [{*run[max(0, visit - 1) : visit + 1]} for visit in range(len(self.arrival))]
+        pairs: set[Pair] = set()
+        for visit, gateways in enumerate(looks):
+            for gateway in gateways:
+                before, slot = divmod(gateway, slots)
+                if before < visit and not of[before] & of[visit]:
+                    pairs.add((before, visit, slot))
+        asked_by: dict[Pair, list[Pair]] = defaultdict(list)
+        wrong = []
+        for pair in pairs:
+            for one, other, apart in self._following(*pair):
+                if one == other:
+                    following = None if apart % slots else pair
+                else:
+                    following = (one, other, apart % slots)
+                    if one > other:
+                        following = (other, one, -apart % slots)
+                if following == pair:
+                    continue
+                if following not in pairs:
+                    wrong.append(pair)
+                    break
+                asked_by[following].append(pair)
+        while wrong:
+            pair = wrong.pop()
+            if pair in pairs:
+                pairs.remove(pair)
+                wrong += asked_by[pair]
+        return pairs
+
+    def _following(self, one: int, other: int, apart: int) -> list[Pair]:
+        """What follows if two visits are of one place: more such visits, in any order."""
+        turns, slots, last = self.turns, self.slots, self.experience.steps
+        pairs = []
+        if other < last and turns[one + 1] == (apart + turns[other + 1]) % slots:
+            pairs.append((one + 1, other + 1, 0))
+        if one > 0 and apart == 0:
+            pairs.append((one - 1, other - 1, turns[one] - turns[other]))
+        if turns[one + 1] == apart:
+            pairs.append((one + 1, other - 1, -turns[other]))
+        if one > 0 and other < last and (apart + turns[other + 1]) % slots == 0:
+            pairs.append((one - 1, other + 1, turns[one]))
+        return pairs

@@ -1,0 +1,237 @@
+"""A node of the search tree that looks ahead: at what the steps to come can still do for the maps
+that are asked for. Where no map below a node can be one, the node is left at once."""
+
+from typing import NamedTuple
+
+from topomap.model.experience import Experience
+from topomap.model.query import Query
+from topomap.search.future import Future
+from topomap.search.hypothesis import Hypothesis, after
+
+
+class _Before(NamedTuple):
+    """What a step changed: at which place, and what of it was known before."""
+
+    place: int
+    fitting: int | None
+    linked_by: dict[int, int]
+    in_time: int
+
+
+class LookAhead(Hypothesis):
+    """A hypothesis below which only the maps of a query are looked for; where no map below it can
+    be one, it is not ``hopeful``.
+
+    ``fitting`` has of each place the visits that can be there, as bits (``Future.fitting``):
+    those that can be of one place with each visit that was there. No step arrives elsewhere.
+
+    For closed maps, each pending gateway is to be linked by a step to come. ``linked_by`` has of
+    each the last step after which it still can be, by the visits that fit at its place;
+    ``pending`` how many there are of each kind, for which there must be as many ends of steps;
+    and ``in_time`` is the last step after which each face of a planar map can be entered in time.
+    """
+
+    def __init__(self, experience: Experience, query: Query):
+        parts = query.parts
+        planar = bool(parts & {"planar", "euler"})
+        super().__init__(experience, planar, query.places, "perpendicular" in parts)
+        self._meets_once = "boundary" in parts  # which two paths break that meet twice
+        self._closed = "closed" in parts
+        self.future = Future(experience, self.views)
+        self.fitting_at = {0: self.future.fitting(0, 0)}
+        self._counted = self._closed or "minimal" in parts
+        self.linked_by: dict[int, int] = {}
+        self.pending = [0] * len(self.future.ends)
+        self.in_time = experience.steps
+        self.dead_ends = [  # gateways of a place with none straight across
+            sum(self._across(gateway) not in star for gateway in star) for star in self.stars
+        ]
+        self.ends = self.dead_ends[0]
+        self._before: list[_Before] = []
+        for gateway in self.stars[0] if self._counted else ():
+            self.pending[self.views[gateway]] += 1
+        if self._closed:
+            for gateway in self.stars[0]:
+                self.linked_by[gateway] = self.future.last_at(gateway, self.fitting_at[0])
+            self._enter_faces()
+
+    def _across(self, gateway: int) -> int:
+        place, slot = divmod(gateway, self.slots)
+        return place * self.slots + (slot + self.slots // 2) % self.slots
+
+    def children(self) -> list[int]:
+        """Where the next step can arrive, as far as what is to come allows it."""
+        out, step = self.out(), self.steps + 1
+        if out in self.links:
+            arrivals = self._known(out, step)
+        elif self._closed and not self._others_wait(out, step):
+            arrivals = []
+        else:
+            arrivals = self._matches(out, step)
+            if (self.bound is None or self.places < self.bound) and self._makes_place(out, step):
+                arrivals.append(step * self.slots)
+        if self.marker[step] is None:
+            return arrivals
+        return [gateway for gateway in arrivals if self.marked(gateway)]
+
+    def _known(self, out: int, step: int) -> list[int]:
+        """The other end of a link, if the next step can arrive there and what is pending can wait
+        until after it."""
+        arrival = self.links[out]
+        place, slot = divmod(arrival, self.slots)
+        if not self.fitting_at[place] >> (step * self.slots + slot) & 1:
+            return []
+        future = self.future
+        if self.views[arrival] != future.arrival[step]:
+            return []
+        if self._closed:
+            if self.in_time < step or min(self.linked_by.values(), default=step) < step:
+                return []
+            for kind in (future.out[step], future.arrival[step]):
+                if self.pending[kind] and future.last(kind, self.pending[kind]) < step:
+                    return []
+        return [arrival]
+
+    def _others_wait(self, out: int, step: int) -> bool:
+        """Whether a link from this gateway leaves time for the faces that it does not touch."""
+        if self.in_time >= step or not self.planar:
+            return True
+        last = self.future.last_of_face
+        return all(not face or out in face or last(face) >= step for face in self.faces)
+
+    def _matches(self, out: int, step: int) -> list[int]:
+        """The gateways of known places where the next step can arrive by a link that is new."""
+        future, slots, views, last = self.future, self.slots, self.views, self.future.last_of_face
+        seen, fitting_at = future.arrival[step], self.fitting_at
+        faces = (self.face(out),) if self.planar else self.faces
+        path = self.path(out)
+        places, meets = self.paths[path], self.meets[path]
+        due = self._due(out, step)
+        arrivals = []
+        for face in faces:
+            for gateway in face:
+                if views[gateway] != seen or gateway == out:
+                    continue
+                place, slot = divmod(gateway, slots)
+                if not fitting_at[place] >> (step * slots + slot) & 1:
+                    continue
+                other = self.path(gateway)
+                if places & self.paths[other]:
+                    continue
+                crossing = self.meets[other]
+                if self._meets_once and meets & crossing:
+                    continue
+                if self.perpendicular and not self._squares(meets, crossing):
+                    continue
+                if self._closed:
+                    if due and due != [gateway]:
+                        continue
+                    if self.planar:
+                        first, second = sorted((face.index(out), face.index(gateway)))
+                        one, two = face[first + 1 : second], face[second + 1 :] + face[:first]
+                        if (one and last(one) < step) or (two and last(two) < step):
+                            continue
+                arrivals.append(gateway)
+        return arrivals
+
+    def _due(self, out: int, step: int) -> list[int]:
+        """The gateways, apart from this one, that can be linked by the next step at the latest."""
+        if not self._closed:
+            return []
+        return [
+            gateway for gateway, by in self.linked_by.items() if by < step and gateway != out
+        ]
+
+    def _makes_place(self, out: int, step: int) -> bool:
+        """Whether a new place can be closed by the steps to come."""
+        if not self._closed:
+            return True
+        if self._due(out, step):
+            return False
+        future, pending = self.future, self.pending
+        if future.place_by[step] < step:
+            return False
+        for kind, many in future.kinds_of[step]:
+            more = pending[kind] + many - (kind == future.out[step])
+            if more and future.last(kind, more) < step:
+                return False
+        if not self.planar:
+            return True
+        face = after(self.stars[step], step * self.slots) + after(self.face(out), out)
+        return not face or future.last_of_face(face) >= step
+
+    def enter(self, arrival: int) -> None:
+        """Go one step on, to a gateway that is one of the children."""
+        super().enter(arrival)
+        step, link = self.steps, self._trail[-1]
+        place, slot = divmod(arrival, self.slots)
+        fitting = self.fitting_at.get(place)
+        changed: dict[int, int] = {}
+        self._before.append(_Before(place, fitting, changed, self.in_time))
+        here = self.future.fitting(step, slot)
+        narrowed = here if fitting is None else fitting & here
+        self.fitting_at[place] = narrowed
+        if place == step:
+            self.ends += self.dead_ends[place]
+        if link is not None and self._counted:
+            if place == step:
+                for gateway in self.stars[place]:
+                    self.pending[self.views[gateway]] += 1
+            self.pending[self.views[link.out]] -= 1
+            self.pending[self.views[arrival]] -= 1
+        if not self._closed:
+            return
+        if link is not None:
+            if place != step:
+                changed[arrival] = self.linked_by.pop(arrival)
+            changed[link.out] = self.linked_by.pop(link.out)
+            self._enter_faces()
+        if narrowed != fitting:
+            linked_by = self.linked_by
+            for gateway in self.stars[place]:
+                if gateway not in self.links:
+                    if gateway in linked_by:
+                        changed[gateway] = linked_by[gateway]
+                    linked_by[gateway] = self.future.last_at(gateway, narrowed)
+
+    def _enter_faces(self) -> None:
+        if self.planar:
+            last = self.future.last_of_face
+            self.in_time = min([last(face) for face in self.faces if face], default=self.experience.steps)
+
+    def undo(self) -> None:
+        """Go one step back."""
+        step, link, arrival = self.steps, self._trail[-1], self.at[-1]
+        super().undo()
+        before = self._before.pop()
+        place = before.place
+        if place == step:
+            del self.fitting_at[place]
+            self.ends -= self.dead_ends[place]
+        else:
+            self.fitting_at[place] = before.fitting
+        if link is not None and self._counted:
+            self.pending[self.views[link.out]] += 1
+            self.pending[self.views[arrival]] += 1
+            if place == step:
+                for gateway in self.stars[place]:
+                    self.pending[self.views[gateway]] -= 1
+        if not self._closed:
+            return
+        if link is not None and place == step:
+            for gateway in self.stars[place]:
+                self.linked_by.pop(gateway, None)
+        self.linked_by.update(before.linked_by)
+        self.in_time = before.in_time
+
+    def least(self) -> tuple[int, int]:
+        """Paths and places that each map below it has at least. A path has two ends: a gateway
+        that is pending, or one with none straight across. Gateways stay pending where there are
+        not enough ends of steps to come."""
+        ends = self.ends
+        if not self._closed:
+            left = self.future.left[self.steps]
+            for many, most in zip(self.pending, left, strict=True):
+                if many > most:
+                    ends += many - most
+        return (ends + 1) // 2, self.places
