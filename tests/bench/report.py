@@ -138,14 +138,14 @@ def _reference(rows: list[dict[str, Any]]) -> str:
     for row in rows:
         if row["name"] in others["rows"]:
             ours = row["ways"].get("work", {})
-            ours = ended(ours)
+            told = ended(ours)
             if ours.get("runs"):
-                ours += " s"
+                told += " s"
             if "rules" in ours:
-                ours += f", {number(ours['rules'])} rules, {number(ours['conflicts'])} conflicts"
+                told += f", {number(ours['rules'])} rules, {number(ours['conflicts'])} conflicts"
             if row["verdict"].startswith(("WRONG", "skipped")):
-                ours = row["verdict"].partition(":")[0]
-            lines.append([row["name"], *others["rows"][row["name"]], ours])
+                told = row["verdict"].partition(":")[0]
+            lines.append([row["name"], *others["rows"][row["name"]], told])
     head = ["task", *others["columns"], "our encodings"]
     return f"{others['source']}\n\n" + _table(head, lines, 5)
 
