@@ -63,8 +63,8 @@ class Answer(Sequence[Map]):
         watch: Watch | None = None,
         waits: bool = True,
     ):
-        """The maps that are ``coming``, at most ``limit`` of them, found under a ``watch``. Its time
-        limit waits while the caller has control, unless it is that of a command, which has it."""
+        """The maps that are ``coming``, at most ``limit`` of them, found under a ``watch``. Its
+        time limit ``waits`` while the caller has control; that of a command does not."""
         self.experience, self.query = experience, query
         self._watch = watch or Watch()
         self._known = _Known(experience, query)

@@ -87,9 +87,7 @@ def solve(
     def coming() -> Generator[Found, None, None]:
         watch.deadline = Deadline(timeout)
         with crew_of(jobs) as crew:
-            yield from every(
-                experience, query, watch, by, optimal, None, crew, circumscribe, limit
-            )
+            yield from every(experience, query, watch, by, optimal, None, crew, circumscribe, limit)
 
     return Answer(experience, query, coming(), limit, watch)
 

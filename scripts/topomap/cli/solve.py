@@ -53,8 +53,8 @@ def add(group: Any) -> None:
         "--by",
         choices=("auto", "clingo", "search"),
         default="auto",
-        help="how to find the maps: clingo, the search in Python, or whichever suits, which is decided "
-        "by how much work there is, never by time (default: %(default)s)",
+        help="how to find the maps: clingo, the search in Python, or whichever suits, which is "
+        "decided by how much work there is, never by time (default: %(default)s)",
     )
     add_query(made, PARTS)
     add_crew(made, "; not with --optimal, --circumscribe, --minimal or --genus")

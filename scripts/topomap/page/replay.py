@@ -12,7 +12,7 @@ from topomap.model.query import Query
 from topomap.model.topology import Gateway
 from topomap.runtime.watch import Attempt, Watch
 from topomap.search import traversal
-from topomap.search.hypothesis import RULES, Hypothesis
+from topomap.search.hypothesis import OFTEN, RULES, Hypothesis
 
 MOST = 20_000  # hypotheses of a step that are all looked at
 KEPT = 500  # of more of them: these, the first by the order
@@ -68,7 +68,7 @@ def _walk(node: Hypothesis, steps: list[Step], first: list[list[Cube]], watch: W
         after = steps[number + 1] if number + 1 < len(steps) else None
         found = Step()
         for count, at in enumerate(level):
-            if count % traversal.OFTEN == 0:
+            if count % OFTEN == 0:
                 watch.tick()
             node.goto(at)
             ordered.append((node.cost, at))

@@ -23,7 +23,7 @@ from topomap.questions.standings import Prediction, predict, standing
 from topomap.runtime import nx
 from topomap.runtime.errors import InputError
 from topomap.runtime.watch import Attempt, Watch
-from topomap.solver import solving
+from topomap.solver import choice, solving
 from topomap.worlds import route
 from topomap.worlds.environment import Environment
 from topomap.worlds.tours import tour as tour_of
@@ -336,7 +336,7 @@ def _go_on(robot: Robot, maps: Sequence[Found], watch: Watch, most: int, marker:
 def best(experience: Experience, query: Query, watch: Watch) -> list[Found]:
     """The optimal maps, or else the best so far, in order; MOST_MAPS of them, if they are more."""
     found: list[Found] = []
-    for one in filter(None, solving.best(experience, query, watch)):
+    for one in filter(None, solving.best(experience, query, watch, choice.hypotheses)):
         if one.proved:
             found.append(one)
             if len(found) == MOST_MAPS:

@@ -1,5 +1,6 @@
-"""Depth-first search for the maps of a query, which looks ahead, and tells how large its tree is."""
+"""Depth-first search for the maps of a query: it looks ahead, and tells how large its tree is."""
 
+import heapq
 from collections.abc import Callable, Collection, Iterator, Sequence
 from dataclasses import replace
 
@@ -7,9 +8,11 @@ from topomap.model.experience import Experience
 from topomap.model.found import Cube, Found
 from topomap.model.query import Query
 from topomap.runtime.watch import Watch, spared
+from topomap.search.hypothesis import OFTEN
 from topomap.search.lookahead import LookAhead
 
-OFTEN = 500  # nodes between two looks at the clock, and the first after which one is told
+# After so many nodes of a query that minimises, so many at most are visited best first.
+GREEDY_AFTER, GREEDY = 4_000, 10_000
 Cost = tuple[int, ...]
 
 
@@ -46,6 +49,7 @@ class Descent:
         self._heed, self._next = heed, OFTEN
         self._watch: Watch | None = None
         self._best: list[Found] = []
+        self._known: set[Cube] = set()  # the best maps that were found greedily
         # Of each node on the way to the one where the search stands: its children that are to be
         # visited, the share of the tree below each, and what a map below them costs at least.
         self._way: list[tuple[list[int], float, Cost]] = []
@@ -111,6 +115,8 @@ class Descent:
                 if self.nodes == self._next and self._heed:
                     self._next *= 2
                     self._heed(self)
+                if self.nodes == GREEDY_AFTER and minimises:
+                    yield from self._greedily()
             if node.steps == steps:
                 yield from self._here()
             elif not (minimises and self._best and self._cost() > self._best[0].cost):
@@ -120,6 +126,39 @@ class Descent:
                     continue
             self.passed += share
             node.undo()
+
+    def _greedily(self) -> Iterator[Found]:
+        """The first maps by the paper's policy (section IV), and better ones: best first by what
+        the map costs so far, and among equals the deepest; GREEDY nodes at most, and once there is
+        a map as many nodes again as it took. A good map is found soon, and cuts the tree."""
+        node, steps, here = self.node, self.node.experience.steps, tuple(self.node.at)
+        node.go(here[:1])
+        border: list[tuple[Cost, int, tuple[int, ...]]] = [(self._so_far(), 0, here[:1])]
+        most, nodes = GREEDY, 0
+        while border and nodes < most:
+            *_, at = heapq.heappop(border)
+            node.go(at)
+            nodes += 1
+            if self._watch and nodes % OFTEN == 0:
+                self._watch.tick()
+            if self._best and self._cost() >= self._best[0].cost:
+                continue
+            for arrival in node.children():
+                node.enter(arrival)
+                if node.steps == steps:
+                    for found in self._here():
+                        most = min(most, 2 * nodes + OFTEN)
+                        yield found
+                else:
+                    heapq.heappush(border, (self._so_far(), -node.steps, (*at, arrival)))
+                node.undo()
+        node.go(here)
+        self._known = {one.at for one in self._best}
+
+    def _so_far(self) -> Cost:
+        """What the map of the node costs, as it is."""
+        genus = (self.node.genus,) if "genus" in self.query.parts else ()
+        return genus + (self.node.cost if "minimal" in self.query.parts else ())
 
     def _open(self, share: float) -> tuple[list[int], float, Cost]:
         """The children of the node where the search stands, the first one last, and what is to be
@@ -147,9 +186,11 @@ class Descent:
         one = Found(node.dstates, self._kind, cost, not self.query.optimizes)
         if self.query.optimizes:
             if best and cost == best[0].cost:
-                best.append(one)
+                if one.at not in self._known:
+                    best.append(one)
                 return
             best[:] = [one]
+            self._known.clear()
         yield one
 
 

@@ -12,6 +12,7 @@ from typing import Any, NamedTuple
 from topomap.model.experience import DState, Experience
 from topomap.model.topology import TopologicalMap
 
+OFTEN = 500  # nodes between two looks at the clock
 Face = tuple[int, ...]
 # What refuses an arrival: another view is seen there, or other landmarks; the marker is seen and
 # does not lie there, or lies there and is not seen; a place would be on a path twice, or the path

@@ -138,9 +138,7 @@ class LookAhead(Hypothesis):
         """The gateways, apart from this one, that can be linked by the next step at the latest."""
         if not self._closed:
             return []
-        return [
-            gateway for gateway, by in self.linked_by.items() if by < step and gateway != out
-        ]
+        return [gateway for gateway, by in self.linked_by.items() if by < step and gateway != out]
 
     def _makes_place(self, out: int, step: int) -> bool:
         """Whether a new place can be closed by the steps to come."""
@@ -197,7 +195,8 @@ class LookAhead(Hypothesis):
     def _enter_faces(self) -> None:
         if self.planar:
             last = self.future.last_of_face
-            self.in_time = min([last(face) for face in self.faces if face], default=self.experience.steps)
+            in_time = [last(face) for face in self.faces if face]
+            self.in_time = min(in_time, default=self.experience.steps)
 
     def undo(self) -> None:
         """Go one step back."""
@@ -208,7 +207,7 @@ class LookAhead(Hypothesis):
         if place == step:
             del self.fitting_at[place]
             self.ends -= self.dead_ends[place]
-        else:
+        elif before.fitting is not None:
             self.fitting_at[place] = before.fitting
         if link is not None and self._counted:
             self.pending[self.views[link.out]] += 1

@@ -14,9 +14,8 @@ from topomap.model.found import Cube, Found
 from topomap.model.query import Query
 from topomap.model.vocabulary import PRUNING
 from topomap.runtime.watch import Watch, spared
-from topomap.search.descent import OFTEN, Descent
-from topomap.search.hypothesis import Hypothesis
-
+from topomap.search.descent import Descent
+from topomap.search.hypothesis import OFTEN, Hypothesis
 
 
 def root(experience: Experience, query: Query) -> Hypothesis:

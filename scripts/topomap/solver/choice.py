@@ -15,10 +15,13 @@ from topomap.search.descent import Descent, TooLarge
 from topomap.solver import solving
 
 # What a tree may have, in nodes: so many for each pair of visits that can be of one place, as the
-# ground program grows with these, but no more than FEW, which take about as long as clingo takes for
-# a program of 100,000 rules; unless there are so many pairs that it could hardly be grounded.
+# ground program grows with these; but no more than FEW, which take as long as clingo takes for
+# some 100,000 rules, unless there are so many pairs that the program could hardly be grounded.
 NODES_A_PAIR, FEW, MANY_PAIRS = 150, 75_000, 5_000
-# And so many for each map: clingo takes as long to find one more map as the search for so many nodes.
+# A query that minimises, and allows pending gateways, is harder for clingo: there are maps of
+# any cost.
+FEW_OPEN = 250_000
+# And so many for each map: to find one more takes clingo as long as the search takes for these.
 NODES_A_MAP, NODES_A_MAP_ALONE = 20, 0.4  # with a part that prunes the tree, and without
 # More maps than these are not kept until the search is done: it begins anew, and hands them over.
 KEPT = 10_000
@@ -66,7 +69,9 @@ class Trial:
 
     def _heed(self, descent: Descent) -> None:
         """Raises TooLarge if the tree is not worth it, or it is but has too many maps to keep."""
-        if max(descent.size, descent.nodes) > self._worth(descent):
+        # Of a query that minimises the tree becomes smaller as better maps are found.
+        size = descent.nodes if self._query.optimizes else max(descent.size, descent.nodes)
+        if size > self._worth(descent):
             raise TooLarge
         if len(self.maps) > KEPT and not self._query.optimizes:
             self.by = SEARCH
@@ -75,6 +80,8 @@ class Trial:
     def _worth(self, descent: Descent) -> float:
         """How many nodes are worth it."""
         pairs = self._pairs
+        if self._query.optimizes and "closed" not in self._query.parts:
+            return FEW_OPEN
         nodes = FEW if pairs is None else NODES_A_PAIR * pairs
         if pairs is not None and pairs <= MANY_PAIRS:
             nodes = min(nodes, FEW)

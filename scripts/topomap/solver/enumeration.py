@@ -38,9 +38,10 @@ def every(
     limit: int | None = None,
 ) -> Generator[Found, None, None]:
     """The maps of a query, or the best of them if ``optimal`` (better and better ones come
-    before those that are proved), or the circumscribed ones; ``by`` is one of WAYS, and ``watch.by``
-    says by which they are given. If there is a journal or a crew, and all maps are asked for, branch
-    by branch of the tree. More than ``limit`` maps will not be taken. Raises Stopped."""
+    before those that are proved), or the circumscribed ones; ``by`` is one of WAYS, and
+    ``watch.by`` says by which they are given. If there is a journal or a crew, and all maps are
+    asked for, branch by branch of the tree. No more than ``limit`` maps, and one to tell that there
+    are others, will be taken. Raises Stopped."""
     journal = journal or Journal()
     watch.by = CLINGO if by == AUTO else by
     if circumscribe:
@@ -89,13 +90,13 @@ def every(
             left = way(experience, query, watch, cubes=branches[done:])
         else:
             left = _shared(crew, way, experience, query, watch, branches[done:])
-        for found in left:
-            if found is None:
+        for one in left:
+            if one is None:
                 known.clear()
                 journal.commit()
-            elif found.at not in known:
-                journal.add(found.at)
-                yield found
+            elif one.at not in known:
+                journal.add(one.at)
+                yield one
 
 
 def proved_or_last(coming: Iterator[Found]) -> Iterator[Found]:

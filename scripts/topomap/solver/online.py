@@ -18,8 +18,8 @@ from topomap.model.query import Query
 from topomap.runtime.folders import ENCODINGS
 from topomap.runtime.limits import MOST_COUNTED
 from topomap.runtime.watch import Attempt, Watch
-from topomap.search.hypothesis import Hypothesis
-from topomap.search.traversal import OFTEN, root
+from topomap.search.hypothesis import OFTEN, Hypothesis
+from topomap.search.traversal import root
 from topomap.solver.boundaries import Boundaries
 
 TRIED = 10  # times as many nodes are visited to tell that there are more
