@@ -237,7 +237,7 @@ def test_without_a_map(inside, tmp_path):
     file.write_text("slots(4). view(0,0). turn(1,0). view(1,0). turn(2,0). view(2,0). view(2,1).")
     done = inside("solve", file, "--circumscribe")
     assert (done.returncode, done.stderr) == (1, "")
-    assert done.stdout == "0 circumscribed maps\n"
+    assert done.stdout == "0 circumscribed maps by clingo\n"
 
 
 def test_a_limit_keeps_what_was_found(inside, tmp_path):
@@ -248,7 +248,7 @@ def test_a_limit_keeps_what_was_found(inside, tmp_path):
     done = inside("solve", file, "--circumscribe", "--limit", "1")
     assert done.returncode == 3
     assert done.stdout.endswith(
-        "1 circumscribed so far map found, more may exist; partial: limit\n"
+        "1 circumscribed so far map found by clingo, more may exist; partial: limit\n"
     )
 
 

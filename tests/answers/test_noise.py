@@ -266,7 +266,7 @@ def test_the_command_says_what_it_disbelieves(topomap):
     assert (done.returncode, done.stderr) == (0, "")
     first, last = done.stdout.splitlines()
     assert first.startswith("map 1: disbelieves step 13 (gateway 2 imagined); places 9, links 12,")
-    assert last == "1 optimal map, cost 1 1 6 9"
+    assert last == "1 optimal map by clingo, cost 1 1 6 9"
 
 
 @pytest.mark.long
@@ -335,7 +335,7 @@ def test_what_is_refused_without_noise_is_a_misreading(topomap, tmp_path, facts)
     assert str(refused.value).endswith("solve --noise allows for that)")
     assert topomap("count", file).returncode == 2
     done = topomap("solve", file, "--noise", "0")
-    assert (done.returncode, done.stdout, done.stderr) == (1, "0 consistent maps\n", "")
+    assert (done.returncode, done.stdout, done.stderr) == (1, "0 consistent maps by clingo\n", "")
     done = topomap("solve", file, "--noise", "1", "--json")
     assert done.returncode == 0
     (tmp_path / "maps.json").write_text(done.stdout)

@@ -79,7 +79,7 @@ def test_what_solve_refuses(seen):
         ({"planr": True}, "'planr' is not one of the parts planar, .*; did you mean planar"),
         ({"bound": 0}, "bound=0"),
         ({"horizon": -1}, "horizon=-1"),
-        ({"by": "magic"}, "'magic' is not one of the ways clingo, search"),
+        ({"by": "magic"}, "'magic' is not one of the ways auto, clingo, search"),
         ({"encoding": "slow"}, "encoding='slow'"),
         ({"noise": 1, "by": "search"}, "noise does not go with"),
         ({"noise": 1, "encoding": "paper"}, "does not go with noise"),

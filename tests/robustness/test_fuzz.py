@@ -161,7 +161,9 @@ def journal():
     with tempfile.TemporaryDirectory() as folder, contextlib.redirect_stderr(io.StringIO()):
         file, snake = Path(folder) / "maps", Path(folder) / "three.lp"
         snake.write_text(THREE)
-        assert cli.main(["solve", str(snake), "--limit", "60", "-o", str(file)]) == 3
+        assert (
+            cli.main(["solve", str(snake), "--by", "clingo", "--limit", "60", "-o", str(file)]) == 3
+        )
         return Path(f"{file}.part").read_text()
 
 

@@ -392,7 +392,7 @@ def test_no_room_left(tmp_path):
     try:
         file = folder / "maps.json"
         file.write_text("old")
-        line = refusal(tmp_path, "solve", GRID, "--json", "-o", file)
+        line = refusal(tmp_path, "solve", GRID, "--by", "clingo", "--json", "-o", file)
         assert line == f"{file}: no space left on device\n"
         assert file.read_text() == "old"
         assert {path.name for path in folder.iterdir()} == {file.name, f"{file.name}.part"}

@@ -15,7 +15,6 @@ from topomap.model.query import Query
 from topomap.model.words import number
 from topomap.runtime.status import INTERRUPT
 from topomap.runtime.watch import Attempt, Stopped, Watch
-from topomap.solver.choice import AUTO
 from topomap.solver.enumeration import proved_or_last
 
 CLOSED = "closed"  # why an answer is partial that was not wanted any more
@@ -186,10 +185,10 @@ class Answer(Sequence[Map]):
         return () if last is None else last.cost
 
     @property
-    def by(self) -> str:
-        """Which way gave the maps: "clingo", or "search"; "auto" as long as none has begun."""
+    def by(self) -> str | None:
+        """Which way gave the maps: "clingo", or "search"; None as long as none has begun."""
         self._settled()
-        return self._watch.by or AUTO
+        return self._watch.by
 
     @property
     def least(self) -> tuple[int, ...] | None:

@@ -219,6 +219,8 @@ class Report:
         line = f"{self.count} {kind}{words.plural(self.count, 'map')}{' found' * bool(fault)}"
         if fault and not self.count:
             line = "no map found yet"
+        elif by is not None:
+            line += f" by {by}"
         if self.last.cost:
             line += f", cost {' '.join(map(str, self.last.cost))}"
         if not self.last.proved:
@@ -231,6 +233,4 @@ class Report:
             line += f", {nodes:,} nodes searched"
         if self.truth and not self.real and (self.count or not fault):
             line += f", the real map is not among {'those found so far' if fault else 'them'}"
-        if by is not None:
-            line += f", by {by}"
         self.out.write(line + (f"; partial: {fault}\n" if fault else "\n"))

@@ -28,7 +28,8 @@ MOST_BYTES_OF_MAPS = 2**32
 LONGER = 10  # times as many dstates as steps: no map of the experience
 _AT = re.compile(r"at\((-?\d+),(-?\d+),(-?\d+)\)", re.ASCII)
 BEST_FIRST = "closed, best-first"
-KINDS = ("consistent", "best", "optimal", "best so far", BEST_FIRST, UNPROVED)
+CIRCUMSCRIBED = ("circumscribed", "circumscribed so far")  # what --circumscribe gives
+KINDS = ("consistent", "best", "optimal", "best so far", *CIRCUMSCRIBED, BEST_FIRST, UNPROVED)
 BEST = ("optimal", "best so far")  # what --optimal gives
 
 
@@ -169,12 +170,15 @@ CLAIMS: dict[str, Callable[[Any], bool]] = {
     "bound": _is_number_or_none,
     "horizon": _is_number_or_none,
     "optimal": _is_truth,
+    "circumscribe": _is_truth,
     "noise": lambda value: value is None or (is_number(value) and value >= 0),
     "kind": lambda kind: kind is None or kind in KINDS,
     "count": is_number,
     "cost": _is_list_of(is_number),
     "proved": _is_truth,
     "nodes": lambda value: is_number(value) and value > 0,
+    "least": _is_list_of(is_number),
+    "by": lambda value: value in ("clingo", "search"),
     "complete": _is_truth,
     "fault": _is_text,
 }

@@ -101,7 +101,11 @@ def hypotheses(
         yield from trial.maps
         return
     best = trial.maps[-1:]
-    yield from best
+    if best:
+        watch.by = SEARCH
+        yield from best
     for found in solving.hypotheses(experience, query, watch, kind):
         if not found or found.proved or not best or found.cost < best[0].cost:
+            watch.by = CLINGO
             yield found
+    watch.by = CLINGO

@@ -1,0 +1,169 @@
+"""One solve for every regime: which way gives the maps is decided by counted work."""
+
+import json
+import time
+
+import pytest
+from conftest import ROOT
+from topomap.api.solve import solve
+from topomap.cli import main
+from topomap.model.facts import read
+from topomap.model.query import Query
+from topomap.runtime.watch import Stopped, Watch
+from topomap.search.lookahead import LookAhead
+from topomap.solver import choice, solving
+from topomap.solver.choice import Trial
+from topomap.worlds.environment import grid
+from topomap.worlds.instance import instance
+
+SNAKE = "instances/grid-4x4-snake.lp"
+SMALL = "instances/grid-3x3-snake.lp"
+
+
+def facts(path, rows, columns, route, **options):
+    """An instance file of a grid."""
+    path.write_text(instance(grid(rows, columns), route, **options).text())
+    return str(path)
+
+
+@pytest.mark.parametrize(
+    ("file", "options", "way", "number"),
+    [
+        (SMALL, [], "search", 88),
+        (SMALL, ["--planar", "--closed"], "search", 3),
+        (SNAKE, ["--planar", "--bound", "16"], "search", 545),
+        (SNAKE, ["--optimal"], "search", 2),
+        (SNAKE, ["--bound", "16"], "clingo", 23685),
+        (SMALL, ["--optimal", "--noise", "0"], "clingo", 2),
+        (SMALL, ["--encoding", "paper"], "clingo", 88),
+        (SMALL, ["--by", "clingo"], "clingo", 88),
+        (SMALL, ["--by", "search"], "search", 88),
+    ],
+)
+def test_the_answer_says_which_way_gave_it(topomap, file, options, way, number):
+    done = topomap("solve", file, *options, "--json")
+    answer = json.loads(done.stdout)
+    assert (answer["by"], answer["count"]) == (way, number)
+    assert (
+        topomap("solve", file, *options)
+        .stdout.splitlines()[-1]
+        .partition(",")[0]
+        .endswith(f" by {way}")
+    )
+
+
+def test_many_maps_of_one_tree_are_handed_over_as_they_are_found(monkeypatch):
+    """More maps than are kept: the search begins anew, and gives them one by one."""
+    experience = read(ROOT / SNAKE)
+    monkeypatch.setattr(choice, "KEPT", 100)
+    trial = Trial(experience, Query(frozenset(["planar"]), 16), Watch())
+    assert (trial.by, trial.whole) == ("search", False)
+    answer = solve(experience, planar=True, bound=16)
+    assert (len(answer), answer.by) == (545, "search")
+
+
+@pytest.mark.parametrize("slow", ["search", "clingo"])
+def test_time_decides_nothing(inside, monkeypatch, tmp_path, slow):
+    """The same bytes when one way takes much longer than it does."""
+    files = [
+        (SMALL, "--planar"),
+        (SNAKE, "--planar", "--bound", "16", "--limit", "5"),
+        (SNAKE, "--bound", "16", "--limit", "30"),
+        (SNAKE, "--optimal"),
+        (facts(tmp_path / "tour.lp", 4, 5, "tour"), "--closed", "--planar"),
+        (facts(tmp_path / "snake.lp", 6, 6, "snake"), "--closed", "--planar", "--limit", "1"),
+    ]
+    quick = [inside("solve", *words, "--json") for words in files]
+    assert {json.loads(done.stdout)["by"] for done in quick} == {"search", "clingo"}
+    children, hypotheses = LookAhead.children, solving.hypotheses
+    number = 0
+
+    def late(node):
+        nonlocal number
+        number += 1
+        if number % 50 == 0:
+            time.sleep(0.001)
+        return children(node)
+
+    def later(*args, **options):
+        time.sleep(0.5)
+        for found in hypotheses(*args, **options):
+            time.sleep(0.01)
+            yield found
+
+    if slow == "search":
+        monkeypatch.setattr(LookAhead, "children", late)
+    else:
+        monkeypatch.setattr(solving, "hypotheses", later)
+        monkeypatch.setitem(choice_ways(), "clingo", later)
+    for words, before in zip(files, quick, strict=True):
+        after = inside("solve", *words, "--json")
+        assert (after.stdout, after.returncode) == (before.stdout, before.returncode)
+    assert number or slow == "clingo"
+
+
+def choice_ways():
+    from topomap.solver.enumeration import WAYS
+
+    return WAYS
+
+
+def test_what_the_search_found_is_kept_when_clingo_is_cut(monkeypatch):
+    """A walk of 240 steps on 4x4: the search finds the true map at once, clingo does not."""
+    walk = instance(grid(4, 4), "walk", steps=240, seed=1)
+
+    def cut(*_, **__):
+        raise Stopped("timeout")
+        yield
+
+    monkeypatch.setitem(choice_ways(), "clingo", cut)
+    monkeypatch.setattr(choice, "MANY_PAIRS", 10**9)
+    answer = solve(walk.experience, closed=True, planar=True, perpendicular=True)
+    assert [one.at for one in answer] == [walk.truth]
+    assert (answer.fault, answer.by, answer.complete) == ("timeout", "search", False)
+
+
+def test_a_best_map_that_is_not_proved_says_what_is_proved(monkeypatch, inside, tmp_path):
+    """What each map costs at least; and that it is not proved to be the best."""
+    path = facts(tmp_path / "tour.lp", 5, 5, "tour")
+
+    def cut(*_, **__):
+        raise Stopped("timeout")
+        yield
+
+    monkeypatch.setattr(solving, "hypotheses", cut)
+    monkeypatch.setattr(choice, "FEW", 600)
+    done = inside("solve", path, "--optimal", "--planar", "--perpendicular", "--json")
+    answer = json.loads(done.stdout)
+    assert done.returncode == 3
+    assert (answer["kind"], answer["proved"], answer["fault"]) == (
+        "not proved to be best",
+        False,
+        "timeout",
+    )
+    assert answer["cost"] == [10, 25]
+    assert [1, 1] < answer["least"] <= answer["cost"]
+    done = inside("solve", path, "--optimal", "--planar", "--perpendicular")
+    least = " ".join(map(str, answer["least"]))
+    assert done.stdout.splitlines()[-1] == (
+        "1 map found by search, cost 10 25, not proved to be best, "
+        f"proved to cost at least {least}; partial: timeout"
+    )
+
+
+def test_a_limit_ends_the_search(monkeypatch):
+    """The first maps are enough; of more, one tells that there are others."""
+    nodes = []
+    monkeypatch.setattr(Trial, "_heed", lambda self, descent: nodes.append(descent.nodes))
+    experience = read(ROOT / SNAKE)
+    answer = solve(experience, planar=True, limit=3)
+    assert (len(answer), answer.fault, answer.by) == (3, "limit", "search")
+    assert not nodes
+    every = solve(experience, planar=True, bound=16, limit=545)
+    assert (len(every), every.fault) == (545, None)
+
+
+def test_an_unknown_way_is_refused():
+    with pytest.raises(ValueError, match="'guess' is not one of the ways auto, clingo, search"):
+        solve(read(ROOT / SMALL), by="guess")
+    assert main(["solve", SMALL, "--by", "guess"]) == 2
