@@ -99,6 +99,7 @@ bench: $(TOOLS)
 	PYTHONPATH=tests $(BIN)/python -m bench.online
 	PYTHONPATH=tests $(BIN)/python -m bench.asking
 	PYTHONPATH=tests $(BIN)/python -m bench.start
+	PYTHONPATH=tests $(BIN)/python -m bench.ways --networks "$(MAPS)"
 
 figures: $(SETUP)
 	$(BIN)/topomap figures --directory docs/figures

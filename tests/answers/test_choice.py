@@ -159,6 +159,12 @@ def test_a_limit_ends_the_search(monkeypatch):
     answer = solve(experience, planar=True, limit=3)
     assert (len(answer), answer.fault, answer.by) == (3, "limit", "search")
     assert not nodes
+    walk = instance(grid(4, 4), "walk", steps=240, seed=1)
+    monkeypatch.undo()
+    monkeypatch.setattr(choice, "MANY_PAIRS", 10**9)
+    first = solve(walk.experience, closed=True, planar=True, perpendicular=True, limit=1)
+    assert [one.at for one in first] == [walk.truth]
+    assert (first.fault, first.by) == ("limit", "search")
     every = solve(experience, planar=True, bound=16, limit=545)
     assert (len(every), every.fault) == (545, None)
 

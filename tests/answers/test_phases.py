@@ -39,7 +39,6 @@ MORE = [
 def always(monkeypatch):
     """Have short explorations done in phases too."""
     monkeypatch.setattr(phases, "LEAST", 0)
-    monkeypatch.setattr(phases, "LEAST_BOUNDED", 0)
     monkeypatch.setattr(phases, "STRIDE", 3)
 
 

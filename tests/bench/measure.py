@@ -132,14 +132,13 @@ def _run(
 ) -> dict[str, Any]:
     """One measurement. Raises Wrong on a wrong answer."""
     limit = plan.seconds(row, way)
-    places = row.search.get("places", row.places) if way == "search" else row.places
     task = {
         "way": way,
         "ask": row.ask,
         "instance": files[0],
         "truth": files[1],
         "parts": row.parts,
-        "places": places,
+        "places": row.places,
         "baseline": str(plan.baseline),
         "memory": plan.memory,
         "limit": limit,

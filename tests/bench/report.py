@@ -18,8 +18,7 @@ HOW = """
 Each measurement is a process of its own, on one core: Python, the package, and clingo with its
 default options, but for what `phases.py` asks of it. `baseline` is `encodings/` at the git
 revision `{revision}`, `work` is `encodings/` as it is now,
-`search` is the package's depth-first search, in Python; where it would not end without, it is
-told how many places the real map has.
+`search` is the package's depth-first search, in Python, which looks ahead.
 Figures of several programs are added up. Seconds are those from the facts to the last
 answer, without the start of Python; memory is the most that the process had{start}. In each
 repetition the ways take turns, so that ratios are of one run; figures are medians. A way is
@@ -101,7 +100,7 @@ def reference() -> dict[str, Any]:
     return tomllib.loads(REFERENCE.read_text(encoding="utf-8"))
 
 
-def _table(head: list[str], lines: list[list[str]], left: int = 1) -> str:
+def table(head: list[str], lines: list[list[str]], left: int = 1) -> str:
     marks = ["---" if column < left else "--:" for column in range(len(head))]
     return "\n".join(f"| {' | '.join(line)} |" for line in [head, marks, *lines]) + "\n"
 
@@ -129,7 +128,7 @@ def _results(rows: list[dict[str, Any]]) -> str:
         figures += [ratio(row, way) for way in ("search", "baseline")]
         line = [row["name"], answer(row), *([""] * 9 if wrong else figures), goal(row)]
         lines.append(line)
-    return _table(head, lines)
+    return table(head, lines)
 
 
 def _reference(rows: list[dict[str, Any]]) -> str:
@@ -147,7 +146,7 @@ def _reference(rows: list[dict[str, Any]]) -> str:
                 told = row["verdict"].partition(":")[0]
             lines.append([row["name"], *others["rows"][row["name"]], told])
     head = ["task", *others["columns"], "our encodings"]
-    return f"{others['source']}\n\n" + _table(head, lines, 5)
+    return f"{others['source']}\n\n" + table(head, lines, 5)
 
 
 def _sources(rows: list[dict[str, Any]]) -> str:
@@ -179,7 +178,7 @@ def _growth(found: list[dict[str, Any]], picture: str) -> str:
         f"![rules, conflicts and seconds as tasks grow]({picture})\n\n"
         "Exponents are those of y = a x^exponent, by least squares of the logarithms, over the "
         f"points of at least {least}; a triangle is a run that the time limit cut.\n\n"
-        + _table(head, lines, 3)
+        + table(head, lines, 3)
     )
 
 
@@ -202,7 +201,7 @@ def _all(rows: list[dict[str, Any]]) -> str:
             )
     head = ["task", "steps", "way", "rules", "atoms", "choices", "conflicts", "nodes"]
     head += ["s", "of the processor", "MB"]
-    return _table([*head, "runs"], lines)
+    return table([*head, "runs"], lines)
 
 
 def text(document: dict[str, Any], picture: str) -> str:
@@ -220,7 +219,7 @@ def text(document: dict[str, Any], picture: str) -> str:
     how = "\n" + textwrap.fill(how, 98, break_on_hyphens=False) + "\n"
     parts = [
         HEAD,
-        _table(
+        table(
             ["machine", ""],
             [[key, f"{value}"] for key, value in (machine | document["versions"]).items()],
             2,
@@ -278,4 +277,4 @@ def jobs(rows: list[dict[str, Any]]) -> str:
         for row in rows
     ]
     head = ["task", "nodes of the tree", "s, one process", f"s, {rows[0]['jobs']} processes"]
-    return _table([*head, "ratio"], lines)
+    return table([*head, "ratio"], lines)

@@ -26,7 +26,6 @@ class Row:
     generate: str = ""
     parts: list[str] = field(default_factory=list)
     places: int | str | None = None
-    search: dict[str, Any] = field(default_factory=dict)
     expected: int | None = None
     why: str = ""
     goal: dict[str, Any] = field(default_factory=dict)

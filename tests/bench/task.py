@@ -14,6 +14,7 @@ import sys
 import time
 from collections import Counter
 from collections.abc import Callable, Iterator
+from itertools import islice
 from pathlib import Path
 from typing import Any, ClassVar
 
@@ -27,7 +28,7 @@ from topomap.paper.statistics import Tally, tree
 from topomap.runtime.journal import Journal
 from topomap.runtime.watch import Stopped, Watch
 from topomap.search import traversal
-from topomap.search.hypothesis import Hypothesis
+from topomap.search.descent import Descent
 from topomap.solver import programs, solving
 
 At = tuple[DState, ...]
@@ -116,12 +117,12 @@ def counted_by_search(task: Task) -> int:
 
 
 def listed_by_search(task: Task) -> int:
-    task.found = [node.dstates for node in _searched(task)]
+    task.found = [*_searched(task)]
     return len(task.found)
 
 
 def one_by_search(task: Task) -> int:
-    task.found = [node.dstates for node, _ in zip(_searched(task), range(1), strict=False)]
+    task.found = [*islice(_searched(task), 1)]
     return len(task.found)
 
 
@@ -143,15 +144,14 @@ def _columns(encoding: str) -> Iterator[tuple[dict[str, Any], Experience, Query]
         yield column, experience, Query(parts, column["places"], encoding=encoding)
 
 
-def _searched(task: Task) -> Iterator[Hypothesis]:
-    """The nodes that stand for the maps, depth-first."""
-    rest = task.query.parts - set(traversal.PRUNING)
-    holds = {"closed": Hypothesis.closed, "travelled": Hypothesis.travelled}
-    tests = [holds[part] for part in rest]
-    for node in traversal.depth_first(traversal.root(task.experience, task.query)):
-        task.nodes += 1
-        if node.steps == task.experience.steps and all(test(node) for test in tests):
-            yield node
+def _searched(task: Task) -> Iterator[At]:
+    """The maps, by the search that looks ahead."""
+    descent = Descent(task.experience, task.query)
+    for found in descent.found():
+        task.nodes = descent.nodes
+        if found:
+            yield found.at
+    task.nodes = descent.nodes
 
 
 # How each way does what is asked. A way of another kind is another entry here.

@@ -48,8 +48,8 @@ class Descent:
         self._kind = kind or query.kind
         self._heed, self._next = heed, OFTEN
         self._watch: Watch | None = None
-        self._best: list[Found] = []
-        self._known: set[Cube] = set()  # the best maps that were found greedily
+        self._best: dict[Cube, Found] = {}  # all of one cost
+        self._worst: Cost | None = None  # what they cost: no map is wanted that costs more
         # Of each node on the way to the one where the search stands: its children that are to be
         # visited, the share of the tree below each, and what a map below them costs at least.
         self._way: list[tuple[list[int], float, Cost]] = []
@@ -72,7 +72,7 @@ class Descent:
             return None
         costs = [cost for children, _, cost in self._way if children]
         costs += [self._cost()] if self._way else []
-        costs += [one.cost for one in self._best[:1]]
+        costs += [self._worst] if self._worst else []
         return min(costs, default=None)
 
     @spared
@@ -88,7 +88,7 @@ class Descent:
             yield from self._below()
             if cubes is not None:
                 yield None
-        for one in self._best:
+        for one in self._best.values():
             yield replace(one, proved=True)
 
     def _below(self) -> Iterator[Found]:
@@ -119,7 +119,7 @@ class Descent:
                     yield from self._greedily()
             if node.steps == steps:
                 yield from self._here()
-            elif not (minimises and self._best and self._cost() > self._best[0].cost):
+            elif self._worst is None or self._cost() <= self._worst:
                 below = self._open(share)
                 if below[0]:
                     way.append(below)
@@ -141,7 +141,7 @@ class Descent:
             nodes += 1
             if self._watch and nodes % OFTEN == 0:
                 self._watch.tick()
-            if self._best and self._cost() >= self._best[0].cost:
+            if self._worst is not None and self._cost() >= self._worst:
                 continue
             for arrival in node.children():
                 node.enter(arrival)
@@ -153,7 +153,6 @@ class Descent:
                     heapq.heappush(border, (self._so_far(), -node.steps, (*at, arrival)))
                 node.undo()
         node.go(here)
-        self._known = {one.at for one in self._best}
 
     def _so_far(self) -> Cost:
         """What the map of the node costs, as it is."""
@@ -176,21 +175,22 @@ class Descent:
     def _here(self) -> Iterator[Found]:
         """The map of the node where the search stands, if it is one of the query, and, where it
         minimises, better than those before."""
-        node, best = self.node, self._best
         cost = self._cost()
-        if (best and cost > best[0].cost) or not holds(node, self.query.parts):
+        if self._worst is not None and cost > self._worst:
+            return
+        if not holds(self.node, self.query.parts):
             return
         self.maps += 1
         if self._watch:
             self._watch.found += 1
-        one = Found(node.dstates, self._kind, cost, not self.query.optimizes)
+        one = Found(self.node.dstates, self._kind, cost, not self.query.optimizes)
         if self.query.optimizes:
-            if best and cost == best[0].cost:
-                if one.at not in self._known:
-                    best.append(one)
+            better = self._worst is None or cost < self._worst
+            if better:
+                self._best, self._worst = {}, cost
+            self._best.setdefault(one.at, one)
+            if not better:
                 return
-            best[:] = [one]
-            self._known.clear()
         yield one
 
 

@@ -5,12 +5,20 @@ All of it is necessary only: what is ruled out here is in no map; what is not ma
 """
 
 from collections import Counter, defaultdict
+from functools import lru_cache
 
 from topomap.model.experience import Experience
+from topomap.search.hypothesis import Hypothesis
 
 Pair = tuple[int, int, int]  # visits T < U, and how many slots clockwise of T's gateway U's is
 MOST_FACES = 100_000  # that are remembered
 MOST_PAIRS = 100_000  # of visits: of more, each is taken to be possible
+
+
+@lru_cache(maxsize=4)
+def number_of_pairs(experience: Experience) -> int | None:
+    """How many pairs of visits can be of one place, so far as pairs tell; None of very many."""
+    return Future(experience, Hypothesis(experience).views).pairs
 
 
 class Future:

@@ -34,7 +34,7 @@ class Trial:
 
     ``by`` is the way that is to give them. If the search has ended, ``whole`` says so, and ``maps``
     has all of them, or the best ones; or else those that were found until then, of which the
-    last one is the best so far.
+    last one is the best so far, and which may be ``enough``: as many as are wanted.
     """
 
     def __init__(
@@ -45,7 +45,7 @@ class Trial:
         kind: str | None = None,
         limit: int | None = None,
     ):
-        self.by, self.whole = CLINGO, False
+        self.by, self.whole, self.enough = CLINGO, False, False
         self.maps: list[Found] = []
         self.least: tuple[int, ...] | None = None
         self._query, self._limit = query, limit
@@ -64,7 +64,8 @@ class Trial:
             if query.optimizes:
                 self.maps = [found for found in self.maps if found.proved]
         except TooLarge:
-            watch.found = known
+            self.enough = limit is not None and len(self.maps) >= limit
+            watch.found = len(self.maps) if self.enough else known
         self.least = descent.least
 
     def _heed(self, descent: Descent) -> None:

@@ -53,8 +53,11 @@ def every(
     elif by == AUTO:
         trial = Trial(experience, query, watch, limit=limit)
         watch.by = trial.by
-        if trial.whole:
+        if trial.whole or trial.enough:
+            watch.by = choice.SEARCH
             yield from trial.maps
+            if trial.enough:
+                raise Stopped("limit")
             return
         some = False
         try:

@@ -6,8 +6,9 @@ the same: each program asks for less than they must have. (Of the marker those k
 do not load the theory.) ``encodings/phases/`` has the programs:
 
 1. ``visits.lp``: which visits can be of one place, by pairs; settled while grounding.
-2. for closed maps with at most so many places: the theory without planarity, but with
-   ``ends.lp``: at which gateways a visit can be in any such map (brave consequences).
+2. for closed maps with at most so many places that need not be perpendicular: the theory without
+   planarity, but with ``ends.lp``: at which gateways a visit can be in any such map (brave
+   consequences).
 
 For large closed and perpendicular maps, where the counting argument of ``runs.lp`` applies:
 
@@ -30,14 +31,14 @@ import clingo
 from clingo import Function, Number, Symbol
 
 from topomap.model.experience import Experience
+from topomap.search.future import number_of_pairs
 from topomap.solver.plane import Planarity
 
 if TYPE_CHECKING:
     from topomap.model.query import Query
 
 SQUARE = {"closed", "perpendicular"}
-LEAST = 80  # steps: shorter explorations are as soon done in one call
-LEAST_BOUNDED = 40  # steps, the same for maps with a bound
+LEAST = 150  # pairs of visits that can be of one place: what has fewer is as soon done in one call
 TRY = 20  # conflicts for a question whose answer may be left open
 IN_VAIN = 50  # such questions in a row: there is no more to be found
 TRY_BOUNDED = 200_000  # conflicts for all maps with a bound
@@ -55,17 +56,18 @@ def serve(experience: Experience, query: "Query") -> bool:
 
 
 def _bounded(experience: Experience, query: "Query") -> bool:
-    long = _steps(experience, query) >= LEAST_BOUNDED
-    return long and "closed" in query.parts and query.places is not None
+    return "closed" in query.parts and query.places is not None and _large(experience, query)
 
 
 def _square(experience: Experience, query: "Query") -> bool:
-    long = _steps(experience, query) >= LEAST
-    return long and query.parts >= SQUARE and experience.slots == 4
+    return query.parts >= SQUARE and experience.slots == 4 and _large(experience, query)
 
 
-def _steps(experience: Experience, query: "Query") -> int:
-    return experience.steps if query.horizon is None else min(query.horizon, experience.steps)
+def _large(experience: Experience, query: "Query") -> bool:
+    """Whether the ground program is large. It grows with the pairs of visits that can be of one
+    place (of very many visits, these are not counted)."""
+    pairs = number_of_pairs(experience if query.horizon is None else experience.cut(query.horizon))
+    return pairs is None or pairs >= LEAST
 
 
 def program(experience: Experience, query: "Query") -> tuple[list[str], list[str]]:
@@ -91,7 +93,7 @@ def found(
     work = _Phases(experience.facts(), folder, heed)
     say("which visits can be of one place")
     few = work.visits()
-    if bounded:
+    if bounded and not square:
         say(f"with {query.places} places")
         work.bounded(query.places or 0)
     if square and few:
