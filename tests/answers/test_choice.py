@@ -1,4 +1,4 @@
-"""One solve for every regime: which way gives the maps is decided by counted work."""
+"""``topomap solve`` chooses by counted work which way gives the maps, and says which one did."""
 
 import json
 import time
@@ -64,7 +64,7 @@ def test_many_maps_of_one_tree_are_handed_over_as_they_are_found(monkeypatch):
 
 @pytest.mark.parametrize("slow", ["search", "clingo"])
 def test_time_decides_nothing(inside, monkeypatch, tmp_path, slow):
-    """The same bytes when one way takes much longer than it does."""
+    """The answer has the same bytes when one of the two ways is slowed down."""
     files = [
         (SMALL, "--planar"),
         (SNAKE, "--planar", "--bound", "16", "--limit", "5"),
@@ -123,6 +123,22 @@ def test_what_the_search_found_is_kept_when_clingo_is_cut(monkeypatch):
     assert (answer.fault, answer.by, answer.complete) == ("timeout", "search", False)
 
 
+@pytest.mark.parametrize("parts", [{"boundary": True}, {"minimal": True}])
+def test_what_was_found_is_kept_when_the_search_is_cut(monkeypatch, parts):
+    """By the watch, while it is not yet decided which way gives the maps."""
+    ticks = iter(range(2))
+
+    def tick(_):
+        if next(ticks, None) is None:
+            raise Stopped("timeout")
+
+    monkeypatch.setattr(Watch, "tick", tick)
+    answer = solve(read(ROOT / SNAKE), bound=16, **parts)
+    assert (answer.fault, answer.by) == ("timeout", "search")
+    assert len(answer) == 1 if "minimal" in parts else len(answer) > 1
+    assert not answer.complete
+
+
 def test_a_best_map_that_is_not_proved_says_what_is_proved(monkeypatch, inside, tmp_path):
     """What each map costs at least; and that it is not proved to be the best."""
     path = facts(tmp_path / "tour.lp", 5, 5, "tour")
@@ -152,7 +168,8 @@ def test_a_best_map_that_is_not_proved_says_what_is_proved(monkeypatch, inside, 
 
 
 def test_a_limit_ends_the_search(monkeypatch):
-    """The first maps are enough; of more, one tells that there are others."""
+    """The search ends as soon as it has found ``limit`` maps and one more, which shows that there
+    are others; and as many maps are given if it is given up after it found them."""
     nodes = []
     monkeypatch.setattr(Trial, "_heed", lambda self, descent: nodes.append(descent.nodes))
     experience = read(ROOT / SNAKE)

@@ -189,7 +189,8 @@ def test_ends_of_steps_are_counted_by_kind():
 
 
 def test_a_search_tells_how_large_its_tree_is():
-    """Twice as often as not the estimate is within a factor of three, from its second tenth on."""
+    """More than two thirds of the estimates that are made after the first fifth of the tree are
+    within a factor of three of its real size."""
     near = told = 0
     for signs in (0, 0.1, 0.2, 0.3):
         estimates = []

@@ -120,12 +120,12 @@ class Signals:
 
 
 class Watch:
-    """What a search looks at between two answers: its deadline, and the signals and the
-    progress line of the command that began it, if one did. ``found`` counts the maps; ``by`` says
-    which way gives them, and ``least`` what each of them costs at least, as far as it is proved.
+    """What the search and clingo look at while they work: the deadline, and the signals and the
+    progress line of the command that began the work, if one did. ``found`` counts the maps; ``by``
+    is the way that gives them, and ``least`` what each of them costs at least, as far as proved.
 
-    Without these it touches nothing of the process, and so goes with any thread. Another thread
-    ends the search by saying in ``ended`` why.
+    Without signals and a progress line it changes nothing in the process, so it can be used in any
+    thread. Another thread ends the work by setting ``ended`` to the reason.
     """
 
     def __init__(
@@ -157,8 +157,8 @@ class Watch:
 
 @contextlib.contextmanager
 def heeding(timeout: float | None = None, quiet: bool = False) -> Iterator[Watch]:
-    """The watch of a command: with a time limit in seconds, a progress line on stderr when it
-    takes long, and an end between two answers on SIGINT and SIGTERM."""
+    """The watch of a command. It has a time limit in seconds, shows a progress line on stderr when
+    the work takes long, and ends the work with Stopped after SIGINT or SIGTERM."""
     progress = Progress(quiet)
     with Signals() as signals:
         try:

@@ -11,7 +11,7 @@ from topomap.runtime.watch import Watch, spared
 from topomap.search.hypothesis import OFTEN
 from topomap.search.lookahead import LookAhead
 
-# After so many nodes of a query that minimises, so many at most are visited best first.
+# After GREEDY_AFTER nodes, a search that minimises visits at most GREEDY nodes best first.
 GREEDY_AFTER, GREEDY = 4_000, 10_000
 Cost = tuple[int, ...]
 
@@ -23,10 +23,11 @@ class TooLarge(Exception):
 class Descent:
     """A search for the maps of a query.
 
-    ``nodes`` were visited, ``maps`` were found, and ``passed`` is the share of the tree that this
-    is if the children of each node have trees of one size: by this, ``size`` tells how many
-    nodes there are, and ``expected`` how many maps. ``heed`` is told after OFTEN nodes, twice as
-    many, and so on; it may raise TooLarge.
+    ``nodes`` is how many nodes were visited, and ``maps`` how many maps were found. ``passed``
+    estimates which share of the tree was searched: it takes the trees below the children of each
+    node to be equally large. From it follow ``size``, how many nodes the tree has, and
+    ``expected``, how many maps. ``heed`` is called with this search after OFTEN nodes, 2 * OFTEN,
+    4 * OFTEN and so on; it may raise TooLarge to end the search.
 
     If the query minimises, nodes below which each map costs more than the best one so far are left
     (``LookAhead.least``); no map costs less than ``least``.
@@ -79,7 +80,8 @@ class Descent:
     def found(
         self, watch: Watch | None = None, cubes: Sequence[Cube] | None = None
     ) -> Iterator[Found | None]:
-        """What ``solver.hypotheses`` gives, in the order of the tree."""
+        """What ``solving.hypotheses`` gives, in the order of the tree. Raises Stopped when the
+        watch ends the search, and what ``heed`` raises."""
         self._watch = watch
         for cube in cubes or [((0, 0),)]:
             self.node.goto(cube)
@@ -128,9 +130,10 @@ class Descent:
             node.undo()
 
     def _greedily(self) -> Iterator[Found]:
-        """The first maps by the paper's policy (section IV), and better ones: best first by what
-        the map costs so far, and among equals the deepest; GREEDY nodes at most, and once there is
-        a map as many nodes again as it took. A good map is found soon, and cuts the tree."""
+        """Best-first search by the paper's policy (section IV): the node whose map costs least so
+        far comes first, and among equals the deepest. It gives the first map that it finds, and
+        better ones. It visits at most GREEDY nodes, and once it has found a map after n nodes, at
+        most 2 * n + OFTEN. A good map is found soon that way, and cuts the tree."""
         node, steps, here = self.node, self.node.experience.steps, tuple(self.node.at)
         node.go(here[:1])
         border: list[tuple[Cost, int, tuple[int, ...]]] = [(self._so_far(), 0, here[:1])]
@@ -160,13 +163,14 @@ class Descent:
         return genus + (self.node.cost if "minimal" in self.query.parts else ())
 
     def _open(self, share: float) -> tuple[list[int], float, Cost]:
-        """The children of the node where the search stands, the first one last, and what is to be
-        known of them; the node has so large a share of the tree."""
+        """The children of the node where the search stands, in reverse order; the share of the tree
+        below each of them, if ``share`` is that of the node; and the least cost below the node."""
         children = self.node.children()[::-1]
         return children, share / max(1, len(children)), self._cost()
 
     def _cost(self) -> Cost:
-        """What the query minimises of the maps below the node, most important first, at least."""
+        """The least cost that a map below the node may have, most important part first; empty if
+        the query minimises nothing."""
         if not self.query.optimizes:
             return ()
         genus = (self.node.genus,) if "genus" in self.query.parts else ()

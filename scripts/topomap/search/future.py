@@ -1,7 +1,8 @@
-"""What the steps to come can still do, worked out once for an exploration: when a gateway of a kind
-can last be linked, and which visits can be of one place.
+"""What the steps to come can still do: when a gateway of a kind can last be linked, and which
+visits can be of one place. It is worked out once for each exploration.
 
-All of it is necessary only: what is ruled out here is in no map; what is not may be in none either.
+These conditions are necessary, but not sufficient: what they rule out is in no map, and what they
+allow need not be in any map either.
 """
 
 from collections import Counter, defaultdict
@@ -10,9 +11,10 @@ from functools import lru_cache
 from topomap.model.experience import Experience
 from topomap.search.hypothesis import Hypothesis
 
-Pair = tuple[int, int, int]  # visits T < U, and how many slots clockwise of T's gateway U's is
+# Visits T < U of one place, and by how many slots U stands clockwise of where T stands.
+Pair = tuple[int, int, int]
 MOST_FACES = 100_000  # that are remembered
-MOST_PAIRS = 100_000  # of visits: of more, each is taken to be possible
+MOST_PAIRS = 100_000  # of visits that look alike: if there are more, no pair is ruled out
 
 
 @lru_cache(maxsize=4)
@@ -37,8 +39,10 @@ class Future:
         self.arrival = [kinds[t * self.slots] for t in range(experience.steps + 1)]
         known = self._retraced()
         number = max(kinds.values()) + 1
-        # Of each kind, the steps that can link a gateway of it, from the last one; a step that
-        # links two of them stands there twice. And those that leave by one.
+        # Of each kind: the steps that have an end at a gateway of it, from the last step to the
+        # first; a step with both ends at such gateways is listed twice. (A step has two ends: the
+        # gateway by which it leaves, and the one at which it arrives.) And the steps that leave by
+        # such a gateway.
         self.ends: list[list[int]] = [[] for _ in range(number)]
         self.leaving: list[list[int]] = [[] for _ in range(number)]
         for step in reversed(steps):
@@ -46,8 +50,9 @@ class Future:
                 self.ends[self.out[step]].append(step)
                 self.ends[self.arrival[step]].append(step)
                 self.leaving[self.out[step]].append(step)
-        # Of a place that a step makes, the kinds of its gateways but for the one of arrival, and
-        # how many there are of each; and the last step after which all of them can be linked.
+        # Of the place that a step may make: how many gateways of each kind it has, apart from the
+        # one of arrival. (The kind of that one is listed even with 0, because the step uses up one
+        # end of it.) And the last step after which all these gateways can still be linked.
         self.kinds_of: list[list[tuple[int, int]]] = []
         self.place_by: list[int] = []
         # After each step, how many ends of each kind are still to come.
@@ -72,15 +77,16 @@ class Future:
             self.place_by.append(min(ends, default=experience.steps))
 
     def last(self, kind: int, many: int) -> int:
-        """The last step after which so many gateways of a kind can still be linked: the steps to
-        come have enough ends of the kind."""
+        """The last step after which this many gateways of a kind can still be linked, because the
+        steps to come have enough ends of it; -1 if there is no such step."""
         ends = self.ends[kind]
         return ends[many - 1] - 1 if many <= len(ends) else -1
 
     def last_of_face(self, face: tuple[int, ...]) -> int:
-        """The last step after which all pending gateways of a face of a planar map can still be
-        linked: some step leaves by one of them, and from it on there are enough ends of each
-        kind. (It cannot be entered otherwise, and a link joins two gateways of one face.)"""
+        """The last step after which all pending gateways of a face of a planar map, at least one,
+        can still be linked; -1 if there is no such step. A link joins two gateways of one face. So
+        a step to come must leave by one of them, and from that step on there must be enough ends
+        of each kind."""
         known = self._in_time.get(face)
         if known is None:
             many: dict[int, int] = defaultdict(int)
@@ -94,13 +100,14 @@ class Future:
         return known
 
     def fitting(self, step: int, slot: int) -> int:
-        """Which visits can be of one place with that of a step, which stood at this slot of it: as
-        bits ``T * slots + S``, for visit T at slot S."""
+        """The visits that can be of one place with the visit after ``step``, if that one stands at
+        ``slot`` of the place. Bit ``T * slots + S`` is set if visit T can be there and stand at
+        slot S. If there are too many pairs to be looked at, all bits are set (-1)."""
         return self._fits[step][slot] if self._fits else -1
 
     def last_at(self, gateway: int, fitting: int) -> int:
-        """The last step after which a gateway of a place can still be linked, if only
-        these visits can be there."""
+        """The last step after which a pending gateway can still be linked if no visits but those
+        of the bits ``fitting`` can be at its place; -1 if there is no such step."""
         arrive, leave = self._ends_at[gateway % self.slots]
         arrival = ((fitting & arrive).bit_length() - 1) // self.slots
         before = ((fitting & leave).bit_length() - 1) // self.slots
@@ -115,9 +122,12 @@ class Future:
         return arrive, leave
 
     def _retraced(self) -> set[int]:
-        """The steps that go back by the way that was come, and so link nothing in any map."""
+        """The steps that only go back over links of earlier steps, so that they add no link in any
+        map."""
         known = set()
-        ways: list[tuple[int, int]] = []  # the turn of each step, and the one that would go back
+        # Of each step that is not gone back over yet: its turn, and the turn that would have gone
+        # back over the step before it instead.
+        ways: list[tuple[int, int]] = []
         back = -1
         for step, turn in enumerate(self.turns[1:], 1):
             if ways and turn == back:
@@ -149,10 +159,12 @@ class Future:
         return masks
 
     def _pairs(self) -> set[Pair] | None:
-        """The pairs of visits that can be of one place: the same is seen there, no run of straight
-        steps holds both (the path axiom), and what follows of them is possible: if they left by
-        one gateway, or came by one, or one left by that by which the other came, the visits at the
-        other ends of these ways are of one place too."""
+        """The pairs of visits that can be of one place; None if too many visits look alike.
+
+        The same is seen at both visits of such a pair, and they are not on one straight run of
+        steps (the path axiom). What follows from the pair must be possible, too: if both visits
+        leave by one gateway, or arrived by one, or if one leaves by the gateway by which the other
+        arrived, then the visits at the other ends of these links are of one place."""
         by_kind: dict[int, list[int]] = defaultdict(list)
         for gateway, kind in self.kinds.items():
             by_kind[kind].append(gateway)
@@ -164,7 +176,7 @@ class Future:
         for turn in turns[2:]:
             runs += turn != slots // 2
             run.append(runs)
-        # The run by which a visit was reached, and the one by which it was left, are all of its.
+        # A visit is on two runs: the one by which it was reached, and the one by which it was left.
         of = [{*run[max(0, visit - 1) : visit + 1]} for visit in range(len(self.arrival))]
         pairs: set[Pair] = set()
         for visit, gateways in enumerate(looks):

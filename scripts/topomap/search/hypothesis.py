@@ -21,8 +21,9 @@ RULES = ("view", "landmark", "marker", "twice", "circular", "planarity", "perpen
 
 
 class Link(NamedTuple):
-    """What a link changed: its gateways, the paths that it made one, and what the faces, and
-    the places and the crossings of the two paths were before."""
+    """What a link changed. ``out`` and ``arrival`` are its gateways, and ``path`` and ``other`` the
+    two paths that it joined. The rest is what was there before: the faces, and for each of the two
+    paths its places and the paths that it meets."""
 
     out: int
     arrival: int
@@ -56,7 +57,7 @@ class Hypothesis:
         self.experience, self.slots = experience, experience.slots
         self.planar, self.bound, self.perpendicular = planar, bound, perpendicular
         self.stars: list[Face] = []  # of the place that a step makes, counter-clockwise
-        self.views: dict[int, int] = {}  # at each of these gateways, numbered
+        self.views: dict[int, int] = {}  # of each gateway, the number of what is seen from it
         numbers: dict[Any, int] = {}
         seen = zip(experience.views, experience.landmarks, strict=True)
         for step, (view, landmarks) in enumerate(seen):
@@ -131,8 +132,8 @@ class Hypothesis:
         return all(self._square(path, places) for path, places in self.paths.items())
 
     def _square(self, path: int, places: int) -> bool:
-        """The path of these places meets no other path twice, and at two places no two paths
-        that meet."""
+        """Whether this path, which has these places, meets no other path twice and is in no
+        triangle: no two paths that meet it at different places meet each other."""
         met = [(places & of, of) for other, of in self.paths.items() if other != path]
         met = [(common, of) for common, of in met if common]
         if any(common & (common - 1) for common, _ in met):
@@ -164,7 +165,8 @@ class Hypothesis:
         return [gateway for gateway in gateways if self.views[gateway] == seen]
 
     def marked(self, gateway: int) -> bool:
-        """Whether the next step sees of the marker at this gateway what it does see."""
+        """Whether the place of this gateway agrees with what the next step sees of the marker: it
+        sees the marker if this is the place where it lies, and does not see it if not."""
         told = self.marker[self.steps + 1]
         return told is None or told[1] == (gateway // self.slots == self.at[told[0]] // self.slots)
 
@@ -205,7 +207,7 @@ class Hypothesis:
         yield new, "marker" if not self.marked(new) else "bound" if full else None
 
     def _mistaken(self, gateway: int) -> str | None:
-        """The rule by which the next step, which sees something, did not arrive at a gateway."""
+        """The first rule by which what the next step sees refuses this gateway, or None."""
         step, (place, slot) = self.steps + 1, divmod(gateway, self.slots)
         if self.views[gateway] == self.views[step * self.slots]:
             return None if self.marked(gateway) else "marker"
@@ -221,9 +223,10 @@ class Hypothesis:
         return not self.perpendicular or self._squares(self.meets[path], self.meets[other])
 
     def _squares(self, meets: int, others: int) -> bool:
-        """Whether a perpendicular map stays so when two paths become one that meet these paths:
-        they share no place, so whatever meets both would meet the new one twice; and if two that
-        meet each other meet one of them each, there would be a triangle."""
+        """Whether the map stays perpendicular when a path that meets ``meets`` and one that meets
+        ``others`` become one. The two share no place, so a path that meets both would meet the new
+        one twice. And if a path that meets the one meets a path that meets the other, the new path
+        makes a triangle with them."""
         if meets & others:
             return False
         return not any(self.meets[met] & others for met in numbers(meets))

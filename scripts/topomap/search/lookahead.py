@@ -1,5 +1,6 @@
-"""A node of the search tree that looks ahead: at what the steps to come can still do for the maps
-that are asked for. Where no map below a node can be one, the node is left at once."""
+"""A node of the search tree that looks ahead: it compares what the maps that are asked for need
+with what the steps to come can still do. A child below which there can be no such map is left out.
+"""
 
 from typing import NamedTuple
 
@@ -19,23 +20,23 @@ class _Before(NamedTuple):
 
 
 class LookAhead(Hypothesis):
-    """A hypothesis below which only the maps of a query are looked for; where no map below it can
-    be one, it is not ``hopeful``.
+    """A hypothesis that has only those children below which there may be a map of a query.
 
-    ``fitting`` has of each place the visits that can be there, as bits (``Future.fitting``):
-    those that can be of one place with each visit that was there. No step arrives elsewhere.
+    ``fitting_at`` holds for each place the visits that can be there, as bits (``Future.fitting``):
+    those that can be of one place with each visit that was there. No other visit arrives there.
 
-    For closed maps, each pending gateway is to be linked by a step to come. ``linked_by`` has of
-    each the last step after which it still can be, by the visits that fit at its place;
-    ``pending`` how many there are of each kind, for which there must be as many ends of steps;
-    and ``in_time`` is the last step after which each face of a planar map can be entered in time.
+    In a closed map each pending gateway must be linked by a step to come. ``linked_by`` holds for
+    each of them the last step after which that is still possible, given the visits that fit at its
+    place. ``pending`` holds how many there are of each kind: the steps to come must have as many
+    ends of this kind. ``in_time`` is the last step after which the gateways of each face of a
+    planar map can still be linked (``Future.last_of_face``).
     """
 
     def __init__(self, experience: Experience, query: Query):
         parts = query.parts
         planar = bool(parts & {"planar", "euler"})
         super().__init__(experience, planar, query.places, "perpendicular" in parts)
-        self._meets_once = "boundary" in parts  # which two paths break that meet twice
+        self._meets_once = "boundary" in parts  # two paths that meet twice break the boundaries
         self._closed = "closed" in parts
         self.future = Future(experience, self.views)
         self.fitting_at = {0: self.future.fitting(0, 0)}
@@ -135,13 +136,14 @@ class LookAhead(Hypothesis):
         return arrivals
 
     def _due(self, out: int, step: int) -> list[int]:
-        """The gateways, apart from this one, that can be linked by the next step at the latest."""
+        """The other pending gateways that only the next step can still link."""
         if not self._closed:
             return []
         return [gateway for gateway, by in self.linked_by.items() if by < step and gateway != out]
 
     def _makes_place(self, out: int, step: int) -> bool:
-        """Whether a new place can be closed by the steps to come."""
+        """Whether the steps to come can still link all pending gateways if the next step makes a
+        new place."""
         if not self._closed:
             return True
         if self._due(out, step):
@@ -224,9 +226,10 @@ class LookAhead(Hypothesis):
         self.in_time = before.in_time
 
     def least(self) -> tuple[int, int]:
-        """Paths and places that each map below it has at least. A path has two ends: a gateway
-        that is pending, or one with none straight across. Gateways stay pending where there are
-        not enough ends of steps to come."""
+        """How many paths and places each map below this node has at least. A path has two ends,
+        each of them at a pending gateway, or at one with none straight across. In maps that need
+        not be closed, gateways stay pending if the steps to come have too few ends of their kind.
+        """
         ends = self.ends
         if not self._closed:
             left = self.future.left[self.steps]

@@ -133,5 +133,5 @@ def hypotheses(
     kind: str | None = None,
     cubes: Sequence[Cube] | None = None,
 ) -> Iterator[Found | None]:
-    """What ``solver.hypotheses`` gives, in the order of the tree."""
+    """What ``solving.hypotheses`` gives, in the order of the tree. Raises Stopped."""
     return Descent(experience, query, kind).found(watch, cubes)

@@ -1,8 +1,8 @@
 """Which way gives the maps of a query: the search where its tree is small, and else clingo.
 
 That is decided by counted work, never by time, so that the same input has the same answer on any
-machine and at any load. The search begins. After 500 nodes, 1,000 and so on it tells how large
-its tree is (``Descent.size``); as long as it is worth it, it goes on.
+machine and at any load. The search is tried first. After 500, 1,000, 2,000 nodes and so on it
+estimates how large its tree is (``Descent.size``). It is given up if the tree is too large.
 """
 
 from collections.abc import Iterator
@@ -10,31 +10,44 @@ from collections.abc import Iterator
 from topomap.model.experience import Experience
 from topomap.model.found import Found
 from topomap.model.query import Query
-from topomap.runtime.watch import Watch
+from topomap.runtime.watch import Stopped, Watch
 from topomap.search.descent import Descent, TooLarge
 from topomap.solver import solving
 
-# What a tree may have, in nodes: so many for each pair of visits that can be of one place, as the
-# ground program grows with these; but no more than FEW, which take as long as clingo takes for
-# some 100,000 rules, unless there are so many pairs that the program could hardly be grounded.
+# The search may visit so many nodes of its tree: NODES_A_PAIR for each pair of visits that can be
+# of one place, because the ground program grows with these pairs, but at most FEW in all: that
+# takes as long as clingo takes for some 100,000 rules. With more than MANY_PAIRS pairs the program
+# could hardly be grounded, so FEW is no limit there. If there are too many pairs to be counted, the
+# limit is FEW.
 NODES_A_PAIR, FEW, MANY_PAIRS = 150, 75_000, 5_000
 # A query that minimises, and allows pending gateways, is harder for clingo: there are maps of
 # any cost.
 FEW_OPEN = 250_000
-# And so many for each map: to find one more takes clingo as long as the search takes for these.
+# Or it may visit so many nodes for each map, if these are more: clingo takes as long to find one
+# more map as the search takes to visit so many nodes.
 NODES_A_MAP, NODES_A_MAP_ALONE = 20, 0.4  # with a part that prunes the tree, and without
-# More maps than these are not kept until the search is done: it begins anew, and hands them over.
+# If there are more maps than these, they are not kept until the search is done: it begins anew, and
+# gives each map when it finds it.
 KEPT = 10_000
 
 AUTO, CLINGO, SEARCH = "auto", "clingo", "search"
 
 
 class Trial:
-    """A search for the maps of a query that ends where clingo would do better.
+    """A search for the maps of a query, which is given up where clingo would do better.
 
-    ``by`` is the way that is to give them. If the search has ended, ``whole`` says so, and ``maps``
-    has all of them, or the best ones; or else those that were found until then, of which the
-    last one is the best so far, and which may be ``enough``: as many as are wanted.
+    ``by`` is the way that is to give the maps. If ``whole``, no more is to be looked for: ``maps``
+    has all maps, or the best ones if the query minimises, or one more than ``limit``. If not,
+    ``maps`` has those that were found before the search was given up (if the query minimises, the
+    last one is the best of them): because of the size of its tree, or, if there is a ``fault``,
+    because the watch has ended it. They may be ``enough``: ``limit`` maps. ``least`` is what each
+    map costs at least, as far as it is proved, or None.
+
+    Parameters:
+        experience, query: what was seen and done, and which maps are asked for.
+        watch: what may end the search.
+        kind: what the maps are said to be; by default what the query calls them.
+        limit: how many maps are wanted; None: all of them.
     """
 
     def __init__(
@@ -46,9 +59,10 @@ class Trial:
         limit: int | None = None,
     ):
         self.by, self.whole, self.enough = CLINGO, False, False
+        self.fault: str | None = None
         self.maps: list[Found] = []
         self.least: tuple[int, ...] | None = None
-        self._query, self._limit = query, limit
+        self._query = query
         if query.encoding != "work" or query.noise is not None:
             return
         descent = Descent(experience, query, kind, self._heed)
@@ -63,6 +77,8 @@ class Trial:
             self.by, self.whole = SEARCH, True
             if query.optimizes:
                 self.maps = [found for found in self.maps if found.proved]
+        except Stopped as stopped:
+            self.by, self.fault = SEARCH, str(stopped)
         except TooLarge:
             self.enough = limit is not None and len(self.maps) >= limit
             watch.found = len(self.maps) if self.enough else known
@@ -70,7 +86,8 @@ class Trial:
 
     def _heed(self, descent: Descent) -> None:
         """Raises TooLarge if the tree is not worth it, or it is but has too many maps to keep."""
-        # Of a query that minimises the tree becomes smaller as better maps are found.
+        # If the query minimises, the tree shrinks as better maps are found, and an estimate would
+        # be too large: so the nodes that were visited are compared.
         size = descent.nodes if self._query.optimizes else max(descent.size, descent.nodes)
         if size > self._worth(descent):
             raise TooLarge
@@ -105,6 +122,8 @@ def hypotheses(
     if best:
         watch.by = SEARCH
         yield from best
+    if trial.fault:
+        raise Stopped(trial.fault)
     for found in solving.hypotheses(experience, query, watch, kind):
         if not found or found.proved or not best or found.cost < best[0].cost:
             watch.by = CLINGO

@@ -1,5 +1,6 @@
-"""Every map of a query, by the way that suits or by one of the two: at once, or branch by branch of
-the tree, each branch a unit of a journal, alone or shared out."""
+"""Every map of a query, by clingo, by the search, or by whichever has less work to do. The maps are
+found in one run, or branch by branch of the tree: then each branch is a unit of a journal, and a
+crew may share the branches out."""
 
 from array import array
 from collections.abc import Generator, Iterator
@@ -37,11 +38,22 @@ def every(
     circumscribe: bool = False,
     limit: int | None = None,
 ) -> Generator[Found, None, None]:
-    """The maps of a query, or the best of them if ``optimal`` (better and better ones come
-    before those that are proved), or the circumscribed ones; ``by`` is one of WAYS, and
-    ``watch.by`` says by which they are given. If there is a journal or a crew, and all maps are
-    asked for, branch by branch of the tree. No more than ``limit`` maps, and one to tell that there
-    are others, will be taken. Raises Stopped."""
+    """The maps of a query, as they are found.
+
+    Parameters:
+        experience, query: what was seen and done, and which maps are asked for.
+        watch: what may end the work; its ``by`` is set to the way that gives the maps.
+        by: one of WAYS.
+        optimal: only the best maps; better and better ones come before those that are proved.
+        journal, crew: with either of them, and if all maps are asked for, the maps are found
+            branch by branch of the tree, unless ``auto`` has found them by the search before that.
+        circumscribe: only the circumscribed maps.
+        limit: how many maps the caller takes at most, not counting one more by which it sees that
+            there are others.
+
+    Raises:
+        Stopped: the work was cut short, or ``limit`` maps were found and the search given up.
+    """
     journal = journal or Journal()
     watch.by = CLINGO if by == AUTO else by
     if circumscribe:
@@ -53,11 +65,11 @@ def every(
     elif by == AUTO:
         trial = Trial(experience, query, watch, limit=limit)
         watch.by = trial.by
-        if trial.whole or trial.enough:
+        if trial.whole or trial.enough or trial.fault:
             watch.by = choice.SEARCH
             yield from trial.maps
-            if trial.enough:
-                raise Stopped("limit")
+            if fault := trial.fault or ("limit" if trial.enough else None):
+                raise Stopped(fault)
             return
         some = False
         try:
