@@ -123,7 +123,7 @@ def test_what_the_search_found_is_kept_when_clingo_is_cut(monkeypatch):
     assert (answer.fault, answer.by, answer.complete) == ("timeout", "search", False)
 
 
-@pytest.mark.parametrize("parts", [{"boundary": True}, {"minimal": True}])
+@pytest.mark.parametrize("parts", [{"boundary": True}, {"boundary": True, "minimal": True}])
 def test_what_was_found_is_kept_when_the_search_is_cut(monkeypatch, parts):
     """By the watch, while it is not yet decided which way gives the maps."""
     ticks = iter(range(2))
