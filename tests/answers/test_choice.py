@@ -10,6 +10,7 @@ from topomap.cli import main
 from topomap.model.facts import read
 from topomap.model.query import Query
 from topomap.runtime.watch import Stopped, Watch
+from topomap.search import descent
 from topomap.search.lookahead import LookAhead
 from topomap.solver import choice, solving
 from topomap.solver.choice import Trial
@@ -76,7 +77,7 @@ def test_time_decides_nothing(inside, monkeypatch, tmp_path, slow):
     quick = [inside("solve", *words, "--json") for words in files]
     assert {json.loads(done.stdout)["by"] for done in quick} == {"search", "clingo"}
     children, hypotheses = LookAhead.children, solving.hypotheses
-    number = 0
+    number, clock = 0, time.monotonic
 
     def late(node):
         nonlocal number
@@ -84,6 +85,10 @@ def test_time_decides_nothing(inside, monkeypatch, tmp_path, slow):
         if number % 50 == 0:
             time.sleep(0.001)
         return children(node)
+
+    def jumping():
+        """A clock by which each node takes a second."""
+        return clock() + number
 
     def later(*args, **options):
         time.sleep(0.5)
@@ -93,6 +98,7 @@ def test_time_decides_nothing(inside, monkeypatch, tmp_path, slow):
 
     if slow == "search":
         monkeypatch.setattr(LookAhead, "children", late)
+        monkeypatch.setattr(time, "monotonic", jumping)
     else:
         monkeypatch.setattr(solving, "hypotheses", later)
         monkeypatch.setitem(choice_ways(), "clingo", later)
@@ -165,6 +171,42 @@ def test_a_best_map_that_is_not_proved_says_what_is_proved(monkeypatch, inside, 
         "1 map found by search, cost 10 25, not proved to be best, "
         f"proved to cost at least {least}; partial: timeout"
     )
+
+
+def test_many_pairs_of_visits_are_searched_at_once():
+    """clingo's program would be too large; but if it is grounded in phases, it is tried."""
+    walk = instance(grid(6, 6), "walk", steps=140, seed=1).experience
+    planar = Query(frozenset(["planar", "perpendicular"]), 20)
+    trial = Trial(walk, planar, Watch())
+    assert (trial.by, trial.whole, trial.maps) == ("search", False, [])
+    assert len([*trial.rest]) == 10
+    closed = planar.having("closed")
+    assert Trial(walk, closed, Watch()).whole
+
+
+def test_a_bound_that_is_proved_of_closed_maps_is_not_said_of_others(monkeypatch):
+    """The search for closed maps is given up; there is none, and the best open one costs less."""
+    seen = instance(grid(3, 3), "walk", steps=14, seed=3).experience
+    monkeypatch.setattr(choice, "FEW", 0)
+    monkeypatch.setattr(choice, "FEW_OPEN", 0)
+    monkeypatch.setattr(descent, "OFTEN", 1)
+    monkeypatch.setattr(choice, "OFTEN", 1)
+    answer = solve(seen, optimal=True)
+    assert answer.kind == "best so far"
+    assert answer.least == answer.cost
+
+
+def test_a_file_can_be_resumed_whichever_way_gives_its_maps(tmp_path):
+    """A run that is cut by its limit, and one that goes on with it."""
+    for number, words in enumerate(([SMALL], [SNAKE, "--bound", "16", "--planar"], [SNAKE])):
+        file, whole = tmp_path / f"{number}", tmp_path / f"{number} whole"
+        rest = ["--horizon", "24"] if words == [SNAKE] else []
+        assert main(["solve", *words, *rest, "-o", str(file), "--limit", "50"]) == 3
+        assert main(["solve", *words, *rest, "-o", str(file), "--resume"]) == 0
+        assert main(["solve", *words, *rest, "-o", str(whole)]) == 0
+        assert sorted(line.partition(": ")[2] for line in file.read_text().splitlines()) == sorted(
+            line.partition(": ")[2] for line in whole.read_text().splitlines()
+        )
 
 
 def test_a_limit_ends_the_search(monkeypatch):

@@ -153,21 +153,21 @@ def instance(call: str, folder: str) -> str | None:
 
 
 def measured(file: str, options: list[str], yard: float, folder: str) -> dict[str, Any]:
-    """What ``solve`` and its two ways take for a row (``solve``, ``alone``), and whether they find
-    different numbers of maps (``wrong``). ``wall`` is the time of ``solve`` by the clock, divided
-    by the goal; ``processor`` is its processor time, divided by that of the faster way; both are
-    None if both ways were cut."""
+    """What ``solve`` and its two ways take for a row (``solve``, ``alone``), and whether they say
+    different things, such as another number of maps or another cost (``wrong``). ``wall`` is the
+    time of ``solve`` by the clock, divided by the goal; ``processor`` is its processor time,
+    divided by that of the faster way; both are None if both ways were cut."""
     call, answer = [*TOPOMAP, "solve", file, *options], str(Path(folder) / "answer")
     solve = run(call, LIMIT, answer)
     limit = min(LIMIT, max(LEAST, 3 * solve.wall))
     alone = {way: run([*call, "--by", way], limit, answer) for way in ("clingo", "search")}
     ended = {way: one for way, one in alone.items() if not one.cut}
     better = min(ended.values(), key=lambda one: one.wall, default=None)
-    numbers = {one.last.split(" ")[0] for one in [solve, *ended.values()] if not one.cut}
+    told = {re.sub(r" by \w+", "", one.last) for one in [solve, *ended.values()] if not one.cut}
     return {
         "solve": solve,
         "alone": alone,
-        "wrong": len(numbers) > 1,
+        "wrong": len(told) > 1,
         "wall": better and solve.wall / (WALL * better.wall + SLACK * yard),
         "processor": better and solve.processor / better.processor,
     }

@@ -195,7 +195,8 @@ class Answer(Sequence[Map]):
         """What each map costs at least, as far as it is proved, if something was minimised; or
         None."""
         known = self._settled()
-        return self.cost if known.last and known.last.proved else self._watch.least
+        least = self.cost if known.last and known.last.proved else self._watch.least
+        return least or None
 
     def __repr__(self) -> str:
         """What is known by now; nothing is looked for."""

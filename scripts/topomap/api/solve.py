@@ -46,7 +46,7 @@ def solve(
         horizon: the last step that counts.
         noise: how many views may be wrong, as few as can be.
         by: ``auto``: the way that suits, by how much work there is to do, never by time;
-            ``clingo``, or ``search``, the paper's own search.
+            ``clingo``, or ``search``, the paper's search of the tree of hypotheses.
         encoding: ``work``, or ``paper``, the rules as the paper states them (slow).
         limit: stop after so many maps.
         timeout: seconds of search after which it stops: they begin with the first map that is

@@ -7,7 +7,7 @@ from dataclasses import replace
 from topomap.model.experience import Experience
 from topomap.model.found import Cube, Found
 from topomap.model.query import Query
-from topomap.runtime.watch import Watch, spared
+from topomap.runtime.watch import Stopped, Watch, spared
 from topomap.search.hypothesis import OFTEN
 from topomap.search.lookahead import LookAhead
 
@@ -26,8 +26,8 @@ class Descent:
     ``nodes`` is how many nodes were visited, and ``maps`` how many maps were found. ``passed``
     estimates which share of the tree was searched: it takes the trees below the children of each
     node to be equally large. From it follow ``size``, how many nodes the tree has, and
-    ``expected``, how many maps. ``heed`` is called with this search after OFTEN nodes, 2 * OFTEN,
-    4 * OFTEN and so on; it may raise TooLarge to end the search.
+    ``expected``, how many maps. ``heed`` is called with this search after each OFTEN nodes; it
+    may raise TooLarge to end the search.
 
     If the query minimises, nodes below which each map costs more than the best one so far are left
     (``LookAhead.least``); no map costs less than ``least``.
@@ -47,7 +47,7 @@ class Descent:
         self.nodes = self.maps = 0
         self.passed = 0.0
         self._kind = kind or query.kind
-        self._heed, self._next = heed, OFTEN
+        self._heed = heed
         self._watch: Watch | None = None
         self._best: dict[Cube, Found] = {}  # all of one cost
         self._worst: Cost | None = None  # what they cost: no map is wanted that costs more
@@ -62,8 +62,8 @@ class Descent:
 
     @property
     def expected(self) -> float:
-        """How many maps there are, as far as that can be told."""
-        return self.maps / self.passed if self.passed else float("inf")
+        """How many maps there are, as far as that can be told; 0 if none was found yet."""
+        return self.maps / self.passed if self.maps else 0.0
 
     @property
     def least(self) -> Cost | None:
@@ -83,13 +83,18 @@ class Descent:
         """What ``solving.hypotheses`` gives, in the order of the tree. Raises Stopped when the
         watch ends the search, and what ``heed`` raises."""
         self._watch = watch
-        for cube in cubes or [((0, 0),)]:
-            self.node.goto(cube)
-            if watch:
-                watch.tick()
-            yield from self._below()
-            if cubes is not None:
-                yield None
+        try:
+            for cube in cubes or [((0, 0),)]:
+                self.node.goto(cube)
+                if watch:
+                    watch.tick()
+                yield from self._below()
+                if cubes is not None:
+                    yield None
+        except Stopped:
+            if watch and self._best:
+                watch.least = self.least
+            raise
         for one in self._best.values():
             yield replace(one, proved=True)
 
@@ -114,8 +119,7 @@ class Descent:
             if self.nodes % OFTEN == 0:
                 if self._watch:
                     self._watch.tick()
-                if self.nodes == self._next and self._heed:
-                    self._next *= 2
+                if self._heed:
                     self._heed(self)
                 if self.nodes == GREEDY_AFTER and minimises:
                     yield from self._greedily()

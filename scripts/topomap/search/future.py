@@ -5,6 +5,8 @@ These conditions are necessary, but not sufficient: what they rule out is in no 
 allow need not be in any map either.
 """
 
+import operator
+from bisect import bisect_left
 from collections import Counter, defaultdict
 from functools import lru_cache
 
@@ -14,6 +16,7 @@ from topomap.search.hypothesis import Hypothesis
 # Visits T < U of one place, and by how many slots U stands clockwise of where T stands.
 Pair = tuple[int, int, int]
 MOST_FACES = 100_000  # that are remembered
+MOST_BITS = 50_000  # of a set of visits, each with a slot: else no such set is kept
 MOST_PAIRS = 100_000  # of visits that look alike: if there are more, no pair is ruled out
 
 
@@ -55,25 +58,26 @@ class Future:
         # end of it.) And the last step after which all these gateways can still be linked.
         self.kinds_of: list[list[tuple[int, int]]] = []
         self.place_by: list[int] = []
-        # After each step, how many ends of each kind are still to come.
-        self.left = [[0] * number]
-        for step in reversed(steps):
-            self.left.append([*self.left[-1]])
-            if step not in known:
-                self.left[-1][self.out[step]] += 1
-                self.left[-1][self.arrival[step]] += 1
-        self.left.reverse()
         self._in_time: dict[tuple[int, ...], int] = {}
-        self.pairs: int | None = None  # of visits that can be of one place, if these are known
-        self._fits = self._masks()
-        self._ends_at = [self._mask(slot) for slot in range(self.slots)]
+        pairs = self._pairs()
+        self.pairs = None if pairs is None else len(pairs)
+        # Of each visit, the other ones that can be of one place with it, and how many slots
+        # clockwise of it they stand; None if that is not known, or takes too many bits.
+        self._others: list[list[tuple[int, int]]] | None = None
+        if pairs is not None and self.slots * len(self.arrival) <= MOST_BITS:
+            self._others = [[] for _ in self.arrival]
+            for one, other, apart in pairs:
+                self._others[one].append((other, apart))
+                self._others[other].append((one, -apart))
+        self._possible: dict[tuple[int, int], int] = {}
+        self._visits_by: dict[int, tuple[int, int]] = {}
         for step, view in enumerate(experience.views):
             others = [step * self.slots + slot for slot in sorted(view) if slot]
             many = Counter(kinds[gateway] for gateway in others)
             many[self.arrival[step]] += 0
             self.kinds_of.append([*many.items()])
-            fitting = self.fitting(step, 0)
-            ends = (self.last_at(gateway, fitting) for gateway in others)
+            possible = self.possible_visits(step, 0)
+            ends = (self.last_at(gateway, possible) for gateway in others)
             self.place_by.append(min(ends, default=experience.steps))
 
     def last(self, kind: int, many: int) -> int:
@@ -81,6 +85,10 @@ class Future:
         steps to come have enough ends of it; -1 if there is no such step."""
         ends = self.ends[kind]
         return ends[many - 1] - 1 if many <= len(ends) else -1
+
+    def left(self, kind: int, step: int) -> int:
+        """How many ends of a kind are still to come after a step."""
+        return bisect_left(self.ends[kind], -step, key=operator.neg)
 
     def last_of_face(self, face: tuple[int, ...]) -> int:
         """The last step after which all pending gateways of a face of a planar map, at least one,
@@ -99,18 +107,31 @@ class Future:
             known = self._in_time[face] = max(entries) - 1
         return known
 
-    def fitting(self, step: int, slot: int) -> int:
+    def possible_visits(self, step: int, slot: int) -> int:
         """The visits that can be of one place with the visit after ``step``, if that one stands at
         ``slot`` of the place. Bit ``T * slots + S`` is set if visit T can be there and stand at
-        slot S. If there are too many pairs to be looked at, all bits are set (-1)."""
-        return self._fits[step][slot] if self._fits else -1
+        slot S. If too much is to be looked at, all bits are set (-1)."""
+        if self._others is None:
+            return -1
+        known = self._possible.get((step, slot))
+        if known is None:
+            known = 1 << (step * self.slots + slot)
+            for other, apart in self._others[step]:
+                known |= 1 << (other * self.slots + (slot + apart) % self.slots)
+            self._possible[step, slot] = known
+        return known
 
-    def last_at(self, gateway: int, fitting: int) -> int:
+    def last_at(self, gateway: int, possible: int) -> int:
         """The last step after which a pending gateway can still be linked if no visits but those
-        of the bits ``fitting`` can be at its place; -1 if there is no such step."""
-        arrive, leave = self._ends_at[gateway % self.slots]
-        arrival = ((fitting & arrive).bit_length() - 1) // self.slots
-        before = ((fitting & leave).bit_length() - 1) // self.slots
+        of the bits ``possible`` can be at its place; -1 if there is no such step."""
+        if possible < 0:
+            return self.experience.steps - 1
+        slot = gateway % self.slots
+        if slot not in self._visits_by:
+            self._visits_by[slot] = self._mask(slot)
+        arrive, leave = self._visits_by[slot]
+        arrival = ((possible & arrive).bit_length() - 1) // self.slots
+        before = ((possible & leave).bit_length() - 1) // self.slots
         return max(arrival - 1, before)
 
     def _mask(self, slot: int) -> tuple[int, int]:
@@ -138,25 +159,6 @@ class Future:
                 ways.append((turn, back))
                 back = 0
         return known
-
-    def _masks(self) -> list[list[int]]:
-        """Of each visit and slot, the visits that can be of one place with it."""
-        pairs = self._pairs()
-        if pairs is None:
-            return []
-        self.pairs = len(pairs)
-        slots = self.slots
-        fits: list[list[tuple[int, int]]] = [[] for _ in self.arrival]
-        for one, other, apart in pairs:
-            fits[one].append((other, apart))
-            fits[other].append((one, -apart))
-        masks = []
-        for visit, others in enumerate(fits):
-            masks.append([1 << (visit * slots + slot) for slot in range(slots)])
-            for other, apart in others:
-                for slot in range(slots):
-                    masks[-1][slot] |= 1 << (other * slots + (slot + apart) % slots)
-        return masks
 
     def _pairs(self) -> set[Pair] | None:
         """The pairs of visits that can be of one place; None if too many visits look alike.

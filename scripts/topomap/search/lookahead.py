@@ -14,7 +14,7 @@ class _Before(NamedTuple):
     """What a step changed: at which place, and what of it was known before."""
 
     place: int
-    fitting: int | None
+    possible: int | None
     linked_by: dict[int, int]
     in_time: int
 
@@ -22,8 +22,9 @@ class _Before(NamedTuple):
 class LookAhead(Hypothesis):
     """A hypothesis that has only those children below which there may be a map of a query.
 
-    ``fitting_at`` holds for each place the visits that can be there, as bits (``Future.fitting``):
-    those that can be of one place with each visit that was there. No other visit arrives there.
+    ``possible_at`` holds for each place the visits that can be there, as bits
+    (``Future.possible_visits``): those that can be of one place with each visit that was there. No
+    other visit arrives there.
 
     In a closed map each pending gateway must be linked by a step to come. ``linked_by`` holds for
     each of them the last step after which that is still possible, given the visits that fit at its
@@ -39,7 +40,7 @@ class LookAhead(Hypothesis):
         self._meets_once = "boundary" in parts  # two paths that meet twice break the boundaries
         self._closed = "closed" in parts
         self.future = Future(experience, self.views)
-        self.fitting_at = {0: self.future.fitting(0, 0)}
+        self.possible_at = {0: self.future.possible_visits(0, 0)}
         self._counted = self._closed or "minimal" in parts
         self.linked_by: dict[int, int] = {}
         self.pending = [0] * len(self.future.ends)
@@ -47,13 +48,13 @@ class LookAhead(Hypothesis):
         self.dead_ends = [  # gateways of a place with none straight across
             sum(self._across(gateway) not in star for gateway in star) for star in self.stars
         ]
-        self.ends = self.dead_ends[0]
+        self.path_ends = self.dead_ends[0]
         self._before: list[_Before] = []
         for gateway in self.stars[0] if self._counted else ():
             self.pending[self.views[gateway]] += 1
         if self._closed:
             for gateway in self.stars[0]:
-                self.linked_by[gateway] = self.future.last_at(gateway, self.fitting_at[0])
+                self.linked_by[gateway] = self.future.last_at(gateway, self.possible_at[0])
             self._enter_faces()
 
     def _across(self, gateway: int) -> int:
@@ -68,8 +69,10 @@ class LookAhead(Hypothesis):
         elif self._closed and not self._others_wait(out, step):
             arrivals = []
         else:
-            arrivals = self._matches(out, step)
-            if (self.bound is None or self.places < self.bound) and self._makes_place(out, step):
+            due = self._due(out, step)
+            arrivals = self._matches(out, step, due)
+            room = self.bound is None or self.places < self.bound
+            if room and not due and self._makes_place(out, step):
                 arrivals.append(step * self.slots)
         if self.marker[step] is None:
             return arrivals
@@ -80,7 +83,7 @@ class LookAhead(Hypothesis):
         until after it."""
         arrival = self.links[out]
         place, slot = divmod(arrival, self.slots)
-        if not self.fitting_at[place] >> (step * self.slots + slot) & 1:
+        if not self.possible_at[place] >> (step * self.slots + slot) & 1:
             return []
         future = self.future
         if self.views[arrival] != future.arrival[step]:
@@ -100,21 +103,20 @@ class LookAhead(Hypothesis):
         last = self.future.last_of_face
         return all(not face or out in face or last(face) >= step for face in self.faces)
 
-    def _matches(self, out: int, step: int) -> list[int]:
+    def _matches(self, out: int, step: int, due: list[int]) -> list[int]:
         """The gateways of known places where the next step can arrive by a link that is new."""
         future, slots, views, last = self.future, self.slots, self.views, self.future.last_of_face
-        seen, fitting_at = future.arrival[step], self.fitting_at
+        seen, possible_at = future.arrival[step], self.possible_at
         faces = (self.face(out),) if self.planar else self.faces
         path = self.path(out)
         places, meets = self.paths[path], self.meets[path]
-        due = self._due(out, step)
         arrivals = []
         for face in faces:
             for gateway in face:
                 if views[gateway] != seen or gateway == out:
                     continue
                 place, slot = divmod(gateway, slots)
-                if not fitting_at[place] >> (step * slots + slot) & 1:
+                if not possible_at[place] >> (step * slots + slot) & 1:
                     continue
                 other = self.path(gateway)
                 if places & self.paths[other]:
@@ -146,8 +148,6 @@ class LookAhead(Hypothesis):
         new place."""
         if not self._closed:
             return True
-        if self._due(out, step):
-            return False
         future, pending = self.future, self.pending
         if future.place_by[step] < step:
             return False
@@ -165,14 +165,14 @@ class LookAhead(Hypothesis):
         super().enter(arrival)
         step, link = self.steps, self._trail[-1]
         place, slot = divmod(arrival, self.slots)
-        fitting = self.fitting_at.get(place)
+        possible = self.possible_at.get(place)
         changed: dict[int, int] = {}
-        self._before.append(_Before(place, fitting, changed, self.in_time))
-        here = self.future.fitting(step, slot)
-        narrowed = here if fitting is None else fitting & here
-        self.fitting_at[place] = narrowed
+        self._before.append(_Before(place, possible, changed, self.in_time))
+        here = self.future.possible_visits(step, slot)
+        narrowed = here if possible is None else possible & here
+        self.possible_at[place] = narrowed
         if place == step:
-            self.ends += self.dead_ends[place]
+            self.path_ends += self.dead_ends[place]
         if link is not None and self._counted:
             if place == step:
                 for gateway in self.stars[place]:
@@ -186,7 +186,7 @@ class LookAhead(Hypothesis):
                 changed[arrival] = self.linked_by.pop(arrival)
             changed[link.out] = self.linked_by.pop(link.out)
             self._enter_faces()
-        if narrowed != fitting:
+        if narrowed != possible:
             linked_by = self.linked_by
             for gateway in self.stars[place]:
                 if gateway not in self.links:
@@ -207,10 +207,10 @@ class LookAhead(Hypothesis):
         before = self._before.pop()
         place = before.place
         if place == step:
-            del self.fitting_at[place]
-            self.ends -= self.dead_ends[place]
-        elif before.fitting is not None:
-            self.fitting_at[place] = before.fitting
+            del self.possible_at[place]
+            self.path_ends -= self.dead_ends[place]
+        elif before.possible is not None:
+            self.possible_at[place] = before.possible
         if link is not None and self._counted:
             self.pending[self.views[link.out]] += 1
             self.pending[self.views[arrival]] += 1
@@ -230,10 +230,10 @@ class LookAhead(Hypothesis):
         each of them at a pending gateway, or at one with none straight across. In maps that need
         not be closed, gateways stay pending if the steps to come have too few ends of their kind.
         """
-        ends = self.ends
+        ends = self.path_ends
         if not self._closed:
-            left = self.future.left[self.steps]
-            for many, most in zip(self.pending, left, strict=True):
-                if many > most:
-                    ends += many - most
+            left, step = self.future.left, self.steps
+            for kind, many in enumerate(self.pending):
+                if many:
+                    ends += max(0, many - left(kind, step))
         return (ends + 1) // 2, self.places

@@ -12,22 +12,22 @@ from topomap.model.found import Found
 from topomap.model.query import Query
 from topomap.runtime.watch import Stopped, Watch
 from topomap.search.descent import Descent, TooLarge
-from topomap.solver import solving
+from topomap.search.hypothesis import OFTEN
+from topomap.solver import phases, solving
 
-# The search may visit so many nodes of its tree: NODES_A_PAIR for each pair of visits that can be
+# The rest of the search may have so many nodes: NODES_A_PAIR for each pair of visits that can be
 # of one place, because the ground program grows with these pairs, but at most FEW in all: that
 # takes as long as clingo takes for some 100,000 rules. With more than MANY_PAIRS pairs the program
-# could hardly be grounded, so FEW is no limit there. If there are too many pairs to be counted, the
-# limit is FEW.
+# could hardly be grounded, unless that is done in phases.
 NODES_A_PAIR, FEW, MANY_PAIRS = 150, 75_000, 5_000
 # A query that minimises, and allows pending gateways, is harder for clingo: there are maps of
 # any cost.
 FEW_OPEN = 250_000
-# Or it may visit so many nodes for each map, if these are more: clingo takes as long to find one
-# more map as the search takes to visit so many nodes.
+# Or the rest may have so many nodes for each map, if these are more: clingo takes as long to find
+# one more map as the search takes to visit so many nodes.
 NODES_A_MAP, NODES_A_MAP_ALONE = 20, 0.4  # with a part that prunes the tree, and without
-# If there are more maps than these, they are not kept until the search is done: it begins anew, and
-# gives each map when it finds it.
+# If more maps than these are found, the search is not ended any more, and gives each map when it
+# finds it.
 KEPT = 10_000
 
 AUTO, CLINGO, SEARCH = "auto", "clingo", "search"
@@ -38,14 +38,15 @@ class Trial:
 
     ``by`` is the way that is to give the maps. If ``whole``, no more is to be looked for: ``maps``
     has all maps, or the best ones if the query minimises, or one more than ``limit``. If not,
-    ``maps`` has those that were found before the search was given up (if the query minimises, the
-    last one is the best of them): because of the size of its tree, or, if there is a ``fault``,
-    because the watch has ended it. They may be ``enough``: ``limit`` maps. ``least`` is what each
-    map costs at least, as far as it is proved, or None.
+    ``maps`` has those that were found by now (if the query minimises, the last one is the best of
+    them). ``rest`` gives the others, if they are to come by this search. Or it was given up:
+    because of the size of its tree, or, if there is a ``fault``, because the watch has ended it.
+    The maps may then be ``enough``: ``limit`` maps. ``least`` is what each map costs at least, if
+    there is any, as far as it is proved, or None.
 
     Parameters:
         experience, query: what was seen and done, and which maps are asked for.
-        watch: what may end the search.
+        watch: what may end the search; its ``by`` is set to the way.
         kind: what the maps are said to be; by default what the query calls them.
         limit: how many maps are wanted; None: all of them.
     """
@@ -61,48 +62,69 @@ class Trial:
         self.by, self.whole, self.enough = CLINGO, False, False
         self.fault: str | None = None
         self.maps: list[Found] = []
+        self.rest: Iterator[Found | None] | None = None
         self.least: tuple[int, ...] | None = None
-        self._query = query
+        self._query, self._next = query, OFTEN
+        watch.by, watch.least = CLINGO, None
         if query.encoding != "work" or query.noise is not None:
             return
+        watch.by = SEARCH
         descent = Descent(experience, query, kind, self._heed)
         self._pairs = descent.node.future.pairs
-        known = watch.found
+        self.rest = descent.found(watch)
+        many = self._pairs is None or self._pairs > MANY_PAIRS
+        self._committed = many and not phases.serve(experience, query)
+        if not self._committed:
+            self._try(descent, watch, limit)
+        if self.rest:
+            self.by = SEARCH
+        watch.by = self.by
+
+    def _try(self, descent: Descent, watch: Watch, limit: int | None) -> None:
+        """Search until it is decided which way is to give the maps."""
+        known, minimises = watch.found, self._query.optimizes
+        assert self.rest is not None
         try:
-            for found in descent.found(watch):
+            for found in self.rest:
                 if found:
                     self.maps.append(found)
-                if limit is not None and len(self.maps) > limit and not query.optimizes:
+                many = len(self.maps)
+                if not minimises and many > KEPT:
+                    self._committed = True
+                    return
+                if not minimises and limit is not None and many > limit:
                     break
             self.by, self.whole = SEARCH, True
-            if query.optimizes:
+            if minimises:
                 self.maps = [found for found in self.maps if found.proved]
         except Stopped as stopped:
             self.by, self.fault = SEARCH, str(stopped)
         except TooLarge:
             self.enough = limit is not None and len(self.maps) >= limit
             watch.found = len(self.maps) if self.enough else known
+        self.rest = None
         self.least = descent.least
 
     def _heed(self, descent: Descent) -> None:
-        """Raises TooLarge if the tree is not worth it, or it is but has too many maps to keep."""
-        # If the query minimises, the tree shrinks as better maps are found, and an estimate would
-        # be too large: so the nodes that were visited are compared.
-        size = descent.nodes if self._query.optimizes else max(descent.size, descent.nodes)
-        if size > self._worth(descent):
+        """Raises TooLarge if the rest of the tree is not worth it. If the query minimises, the tree
+        shrinks as better maps are found, and an estimate would be too large: so the nodes that
+        were visited are compared, unless there is little left."""
+        if self._committed:
+            return
+        nodes, worth = descent.nodes, self._worth(descent)
+        left = descent.size - nodes
+        if nodes > worth and (left > nodes / 4 or nodes > 2 * worth):
             raise TooLarge
-        if len(self.maps) > KEPT and not self._query.optimizes:
-            self.by = SEARCH
-            raise TooLarge
+        if nodes == self._next:
+            self._next *= 2
+            if left > worth and not self._query.optimizes:
+                raise TooLarge
 
     def _worth(self, descent: Descent) -> float:
         """How many nodes are worth it."""
-        pairs = self._pairs
         if self._query.optimizes and "closed" not in self._query.parts:
             return FEW_OPEN
-        nodes = FEW if pairs is None else NODES_A_PAIR * pairs
-        if pairs is not None and pairs <= MANY_PAIRS:
-            nodes = min(nodes, FEW)
+        nodes = FEW if self._pairs is None else min(FEW, NODES_A_PAIR * self._pairs)
         prunes = bool(self._query.parts & {"planar", "perpendicular", "closed"})
         return max(nodes, (NODES_A_MAP if prunes else NODES_A_MAP_ALONE) * descent.expected)
 
@@ -114,18 +136,20 @@ def hypotheses(
     ``watch.by`` says by which. Of maps that are not proved to be best, only better ones than the
     best of the search are given."""
     trial = Trial(experience, query, watch, kind)
-    watch.by, watch.least = trial.by, trial.least
     if trial.whole:
         yield from trial.maps
         return
+    if trial.rest:
+        yield from trial.rest
+        return
     best = trial.maps[-1:]
     if best:
-        watch.by = SEARCH
+        watch.by, watch.least = SEARCH, trial.least
         yield from best
     if trial.fault:
         raise Stopped(trial.fault)
     for found in solving.hypotheses(experience, query, watch, kind):
         if not found or found.proved or not best or found.cost < best[0].cost:
-            watch.by = CLINGO
+            watch.by, watch.least = CLINGO, trial.least
             yield found
     watch.by = CLINGO

@@ -64,7 +64,11 @@ def every(
         yield from filter(None, WAYS[by](experience, query, watch))
     elif by == AUTO:
         trial = Trial(experience, query, watch, limit=limit)
-        watch.by = trial.by
+        if trial.rest and crew is ALONE and not journal.kept:
+            while trial.maps:
+                yield trial.maps.pop(0)
+            yield from filter(None, trial.rest)
+            return
         if trial.whole or trial.enough or trial.fault:
             watch.by = choice.SEARCH
             yield from trial.maps
@@ -72,6 +76,7 @@ def every(
                 raise Stopped(fault)
             return
         some = False
+        watch.found = 0
         try:
             for found in every(experience, query, watch, trial.by, False, journal, crew):
                 some = True
