@@ -4,7 +4,7 @@
 # make lint       check style and types
 # make instances  make the batch that instances/batch.txt lists (try make -j2 instances)
 # make bench      time the encodings and the search, write docs/benchmark.md, then what steps of
-#                 follow, questions and the start take, docs/{online,asking,start}.md (half an hour;
+#                 follow, questions, the start and solve take, docs/{online,asking,start,solve}.md (an hour;
 #                 BENCH: options, such as BENCH='--only 8x8', BENCH=--quick, BENCH=--help)
 # make figures    draw the pictures of the pages again, docs/figures/
 # make simulate   let robots explore twenty worlds, docs/simulations.json (three minutes)

@@ -15,15 +15,14 @@ from topomap.search.descent import Descent, TooLarge
 from topomap.search.hypothesis import OFTEN
 from topomap.solver import phases, solving
 
-# The rest of the search may have so many nodes: NODES_A_PAIR for each pair of visits that can be
-# of one place, because the ground program grows with these pairs, but at most FEW in all: that
+# The tree may have so many nodes: NODES_A_PAIR for each pair of visits that can be of one place, because the ground program grows with these pairs, but at most FEW in all: that
 # takes as long as clingo takes for some 100,000 rules. With more than MANY_PAIRS pairs the program
 # could hardly be grounded, unless that is done in phases.
 NODES_A_PAIR, FEW, MANY_PAIRS = 150, 75_000, 5_000
 # A query that minimises, and allows pending gateways, is harder for clingo: there are maps of
 # any cost.
 FEW_OPEN = 250_000
-# Or the rest may have so many nodes for each map, if these are more: clingo takes as long to find
+# Or the tree may have so many nodes for each map, if these are more: clingo takes as long to find
 # one more map as the search takes to visit so many nodes.
 NODES_A_MAP, NODES_A_MAP_ALONE = 20, 0.4  # with a part that prunes the tree, and without
 # If more maps than these are found, the search is not ended any more, and gives each map when it
@@ -106,19 +105,19 @@ class Trial:
         self.least = descent.least
 
     def _heed(self, descent: Descent) -> None:
-        """Raises TooLarge if the rest of the tree is not worth it. If the query minimises, the tree
-        shrinks as better maps are found, and an estimate would be too large: so the nodes that
-        were visited are compared, unless there is little left."""
+        """Raises TooLarge if the tree is larger than it is worth, unless there is little left of it.
+        If the query minimises, the tree shrinks as better maps are found, and an estimate would be
+        too large: so the nodes that were visited are compared."""
         if self._committed:
             return
-        nodes, worth = descent.nodes, self._worth(descent)
-        left = descent.size - nodes
-        if nodes > worth and (left > nodes / 4 or nodes > 2 * worth):
-            raise TooLarge
+        nodes, worth, size = descent.nodes, self._worth(descent), 0.0
         if nodes == self._next:
             self._next *= 2
-            if left > worth and not self._query.optimizes:
-                raise TooLarge
+            if not self._query.optimizes:
+                size = descent.size
+        little = descent.size - nodes <= nodes / 4
+        if nodes > 2 * worth or (max(nodes, size) > worth and not little):
+            raise TooLarge
 
     def _worth(self, descent: Descent) -> float:
         """How many nodes are worth it."""
