@@ -15,9 +15,10 @@ from topomap.search.descent import Descent, TooLarge
 from topomap.search.hypothesis import OFTEN
 from topomap.solver import phases, solving
 
-# The tree may have so many nodes: NODES_A_PAIR for each pair of visits that can be of one place, because the ground program grows with these pairs, but at most FEW in all: that
-# takes as long as clingo takes for some 100,000 rules. With more than MANY_PAIRS pairs the program
-# could hardly be grounded, unless that is done in phases.
+# The tree may have so many nodes: NODES_A_PAIR for each pair of visits that can be of one place,
+# because the ground program grows with these pairs, but at most FEW in all: that takes as long as
+# clingo takes for some 100,000 rules. With more than MANY_PAIRS pairs the program could hardly be
+# grounded, unless that is done in phases.
 NODES_A_PAIR, FEW, MANY_PAIRS = 150, 75_000, 5_000
 # A query that minimises, and allows pending gateways, is harder for clingo: there are maps of
 # any cost.
@@ -105,8 +106,8 @@ class Trial:
         self.least = descent.least
 
     def _heed(self, descent: Descent) -> None:
-        """Raises TooLarge if the tree is larger than it is worth, unless there is little left of it.
-        If the query minimises, the tree shrinks as better maps are found, and an estimate would be
+        """Raises TooLarge if the tree is larger than it is worth, unless little is left of it. If
+        the query minimises, the tree shrinks as better maps are found, and an estimate would be
         too large: so the nodes that were visited are compared."""
         if self._committed:
             return
