@@ -331,12 +331,12 @@ def test_want_of_memory(tmp_path, extra, record_property):
     for megabytes in extra:
         limit = (least + 20 + megabytes) * 1024
         out = tmp_path / "out"
-        status, printed, told = confined(limit, "solve", hungry, "--optimal")
+        status, printed, told = confined(limit, "solve", hungry, "--by", "clingo", "--optimal")
         assert status == 3, (megabytes, status, printed, told)
         assert printed in ("no map found yet; partial: out of memory\n", "")
         assert told == ("" if printed else OUT_OF_MEMORY)
         out.write_text(OLD)
-        call = "solve", GRID, hungry, "--json", "--planar", "-o", out
+        call = "solve", GRID, hungry, "--by", "clingo", "--json", "--planar", "-o", out
         status, _, told = confined(limit, *call)
         assert status == 3, (megabytes, status, told)
         if out.read_text() == OLD:
