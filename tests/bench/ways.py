@@ -212,7 +212,8 @@ def line(name: str, one: dict[str, Any]) -> tuple[list[str], bool]:
     """A row of the table; and whether its goal is missed, or it is wrong."""
     last = one["solve"].last
     by = re.search(r" by (\w+)", last)
-    late = one["wall"] is None or one["wall"] > 1
+    # Where both ways alone were cut, solve is the better one if it has ended.
+    late = one["solve"].cut if one["wall"] is None else one["wall"] > 1
     dear = one["processor"] is not None and one["processor"] > PROCESSOR
     cells = [
         name,

@@ -126,7 +126,7 @@ def test_whoever_resumes_comes_to_the_same(tmp_path, monkeypatch):
     """The units do not depend on how many do them."""
     whole, file = tmp_path / "whole", tmp_path / "file"
     for command in ("count", "solve"):
-        asked = [command, PAPER, "--horizon", "18"]
+        asked = [command, PAPER, "--horizon", "18", *(CLINGO if command == "solve" else [])]
         assert main([*asked, "-o", str(whole)]) == 0
         for jobs, units in ((2, 30), (1, 10), (3, None)):
             call = [*asked, "--jobs", str(jobs), "-o", str(file), "--resume"]

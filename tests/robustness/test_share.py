@@ -69,7 +69,7 @@ def local_cluster():
 
 @pytest.mark.long
 def test_nothing_is_said_of_the_processes():
-    for command in (["count"], ["solve"], ["solve", "--by", "search"]):
+    for command in (["count"], ["solve", "--by", "clingo"], ["solve", "--by", "search"]):
         call = [BIN / "topomap", *command, GRID, "--jobs", "2"]
         done = subprocess.run(call, capture_output=True, text=True)
         assert (done.returncode, done.stderr) == (0, "")
@@ -238,8 +238,9 @@ def test_the_same_maps(cluster, capsys):
         return answer["count"], sorted(map(json.dumps, answer["maps"]))
 
     whole = maps()
-    for more in (["--jobs", "2"], ["--jobs", "2", "--by", "search"], ["--dask", cluster]):
-        assert maps(*more) == whole
+    for way in ("clingo", "search"):
+        for more in (["--jobs", "2"], ["--dask", cluster]):
+            assert maps(*more, "--by", way) == whole
     assert whole[0] > 64
 
 
