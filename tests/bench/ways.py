@@ -197,7 +197,8 @@ def answers(yard: float, folder: str) -> tuple[str, bool]:
         ["JSON", as_json, 1.5 * dumps + most],
     ]
     made = [
-        [name, f"{took:.2f}", f"{goal:.2f}", f"{took / goal:.2f}"] for name, took, goal in lines
+        [name, f"{took:.2f}", f"{goal:.2f}", f"{took / goal:.2f}{MISSED * (took > goal)}"]
+        for name, took, goal in lines
     ]
     told = table(["how", "s", "goal", "s : goal"], made)
     why = (

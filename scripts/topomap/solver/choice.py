@@ -117,7 +117,7 @@ class Trial:
             if not self._query.optimizes:
                 size = descent.size
         little = descent.size - nodes <= nodes / 4
-        if nodes > 2 * worth or (max(nodes, size) > worth and not little):
+        if nodes > 3 * worth or (max(nodes, size) > worth and not little):
             raise TooLarge
 
     def _worth(self, descent: Descent) -> float:
