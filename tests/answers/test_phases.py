@@ -3,6 +3,7 @@ the search, and what each phase finds is true of every map."""
 
 import json
 import random
+from dataclasses import replace
 from itertools import combinations, combinations_with_replacement, pairwise
 
 import pytest
@@ -538,3 +539,11 @@ def test_phases_that_run_out_of_memory_say_so(monkeypatch):
         list(solving.hypotheses(WORLDS["to and fro"], query, QUIET))
     with pytest.raises(Stopped, match="out of memory"):
         solving.count(WORLDS["to and fro"], query)
+
+
+def test_there_are_no_phases_where_views_may_be_wrong():
+    """All that they find rests on what is seen."""
+    snake = instance(grid(5, 5), "snake").experience
+    asked = Query(frozenset(["closed", "perpendicular"]))
+    assert phases.serve(snake, asked)
+    assert not phases.serve(snake, replace(asked, noise=1))

@@ -51,8 +51,9 @@ Heed = Callable[[clingo.Control], None]
 
 
 def serve(experience: Experience, query: "Query") -> bool:
-    """Whether there are phases for such a query."""
-    return _bounded(experience, query) or _square(experience, query)
+    """Whether there are phases for such a query. There are none where views may be wrong: all that
+    the phases find rests on what is seen."""
+    return query.noise is None and (_bounded(experience, query) or _square(experience, query))
 
 
 def _bounded(experience: Experience, query: "Query") -> bool:
