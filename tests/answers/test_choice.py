@@ -184,16 +184,32 @@ def test_many_pairs_of_visits_are_searched_at_once():
     assert Trial(walk, closed, Watch()).whole
 
 
-def test_a_bound_that_is_proved_of_closed_maps_is_not_said_of_others(monkeypatch):
-    """The search for closed maps is given up; there is none, and the best open one costs less."""
+def test_a_bound_of_closed_maps_is_not_said_where_there_may_be_none(monkeypatch):
+    """The search for closed maps is given up with a bound, clingo finds that there is none, and
+    is cut before it has another map."""
     seen = instance(grid(3, 3), "walk", steps=14, seed=3).experience
-    monkeypatch.setattr(choice, "FEW", 0)
-    monkeypatch.setattr(choice, "FEW_OPEN", 0)
-    monkeypatch.setattr(descent, "OFTEN", 1)
-    monkeypatch.setattr(choice, "OFTEN", 1)
+    for name in ("FEW", "FEW_OPEN", "NODES_A_STEP"):
+        monkeypatch.setattr(choice, name, 0)
+    for module in (descent, choice):
+        monkeypatch.setattr(module, "OFTEN", 1)
+    parts = ["closed", "boundary", "minimal"]
+    assert Trial(seen, Query(frozenset(parts)), Watch()).least is not None
+
+    def cut(_, query, *rest):
+        if "closed" not in query.parts:
+            raise Stopped("timeout")
+        return iter(())
+
+    monkeypatch.setattr(solving, "hypotheses", cut)
     answer = solve(seen, optimal=True)
-    assert answer.kind == "best so far"
-    assert answer.least == answer.cost
+    assert (len(answer), answer.fault, answer.least) == (0, "timeout", None)
+
+
+def test_a_long_log_of_which_one_hypothesis_lives_is_searched():
+    """No two visits look alike, and no branch of the tree has ended when its size is first told."""
+    log = instance(grid(30, 30), "snake", steps=700, signs=1).experience
+    trial = Trial(log, Query(), Watch())
+    assert (trial.by, trial.whole, len(trial.maps)) == ("search", True, 1)
 
 
 def test_a_file_can_be_resumed_whichever_way_gives_its_maps(tmp_path):

@@ -26,6 +26,7 @@ FEW_OPEN = 250_000
 # Or the tree may have so many nodes for each map, if these are more: clingo takes as long to find
 # one more map as the search takes to visit so many nodes.
 NODES_A_MAP, NODES_A_MAP_ALONE = 20, 0.4  # with a part that prunes the tree, and without
+NODES_A_STEP = 10  # and so many for each step, as the first map alone takes one
 # If more maps than these are found, the search is not ended any more, and gives each map when it
 # finds it.
 KEPT = 10_000
@@ -114,19 +115,21 @@ class Trial:
         nodes, worth, size = descent.nodes, self._worth(descent), 0.0
         if nodes == self._next:
             self._next *= 2
-            if not self._query.optimizes:
+            # Before the first end of a branch nothing can be told of the others.
+            if descent.passed and not self._query.optimizes:
                 size = descent.size
         little = descent.size - nodes <= nodes / 4
         if nodes > 3 * worth or (max(nodes, size) > worth and not little):
             raise TooLarge
 
     def _worth(self, descent: Descent) -> float:
-        """How many nodes are worth it."""
+        """How many nodes are worth it. However few visits look alike, each step is a node."""
+        steps = NODES_A_STEP * descent.node.experience.steps
         if self._query.optimizes and "closed" not in self._query.parts:
-            return FEW_OPEN
+            return max(FEW_OPEN, steps)
         nodes = FEW if self._pairs is None else min(FEW, NODES_A_PAIR * self._pairs)
         prunes = bool(self._query.parts & {"planar", "perpendicular", "closed"})
-        return max(nodes, (NODES_A_MAP if prunes else NODES_A_MAP_ALONE) * descent.expected)
+        return max(nodes, steps, (NODES_A_MAP if prunes else NODES_A_MAP_ALONE) * descent.expected)
 
 
 def hypotheses(
