@@ -123,13 +123,18 @@ def _state(node):
     return {name: copy(value) for name, value in state.items()}
 
 
+def futures(name):
+    """Random experiences, the root of the tree of each, and what is known of its steps to come."""
+    for number in range(150):
+        experience = random_experience(random.Random(f"{name} {number}"), 9)
+        node = Hypothesis(experience)
+        yield experience, node, Future(experience, node.views)
+
+
 def test_visits_that_are_of_one_place_in_some_map_are_a_pair():
     """And of pairs that look alike, many are ruled out, each of which is in no map."""
     ruled_out = 0
-    for number in range(150):
-        experience = random_experience(random.Random(f"pairs {number}"), 9)
-        node = Hypothesis(experience)
-        future = Future(experience, node.views)
+    for experience, node, future in futures("pairs"):
         alike = {
             (one, other, gateway % node.slots)
             for one, other in combinations(range(experience.steps + 1), 2)
@@ -155,10 +160,7 @@ def test_visits_that_are_of_one_place_in_some_map_are_a_pair():
 def test_steps_that_go_back_link_nothing():
     """And they are no ends by which a pending gateway could be linked."""
     back = 0
-    for number in range(150):
-        experience = random_experience(random.Random(f"back {number}"), 9)
-        node = Hypothesis(experience)
-        future = Future(experience, node.views)
+    for experience, node, future in futures("back"):
         known = {step for of in future.ends for step in of}
         retraced = set(range(1, experience.steps + 1)) - known
         back += len(retraced)

@@ -8,7 +8,7 @@ from topomap.model.experience import Experience
 from topomap.model.found import Cube, Found
 from topomap.model.query import Query
 from topomap.runtime.watch import Stopped, Watch, spared
-from topomap.search.hypothesis import OFTEN
+from topomap.search.hypothesis import OFTEN, Hypothesis
 from topomap.search.lookahead import LookAhead
 
 # After GREEDY_AFTER nodes, a search that minimises visits at most GREEDY nodes best first.
@@ -140,7 +140,7 @@ class Descent:
         most 2 * n + OFTEN. A good map is found soon that way, and cuts the tree."""
         node, steps, here = self.node, self.node.experience.steps, tuple(self.node.at)
         node.go(here[:1])
-        border: list[tuple[Cost, int, tuple[int, ...]]] = [(self._so_far(), 0, here[:1])]
+        border: list[tuple[Cost, int, tuple[int, ...]]] = [(self._of(node.cost), 0, here[:1])]
         most, nodes = GREEDY, 0
         while border and nodes < most:
             *_, at = heapq.heappop(border)
@@ -157,14 +157,9 @@ class Descent:
                         most = min(most, 2 * nodes + OFTEN)
                         yield found
                 else:
-                    heapq.heappush(border, (self._so_far(), -node.steps, (*at, arrival)))
+                    heapq.heappush(border, (self._of(node.cost), -node.steps, (*at, arrival)))
                 node.undo()
         node.go(here)
-
-    def _so_far(self) -> Cost:
-        """What the map of the node costs, as it is."""
-        genus = (self.node.genus,) if "genus" in self.query.parts else ()
-        return genus + (self.node.cost if "minimal" in self.query.parts else ())
 
     def _open(self, share: float) -> tuple[list[int], float, Cost]:
         """The children of the node where the search stands, in reverse order; the share of the tree
@@ -175,10 +170,13 @@ class Descent:
     def _cost(self) -> Cost:
         """The least cost that a map below the node may have, most important part first; empty if
         the query minimises nothing."""
-        if not self.query.optimizes:
-            return ()
+        return self._of(self.node.least()) if self.query.optimizes else ()
+
+    def _of(self, paths_and_places: tuple[int, int]) -> Cost:
+        """What the query minimises: the genus of the node's map, which no link makes less, and
+        these numbers of paths and places."""
         genus = (self.node.genus,) if "genus" in self.query.parts else ()
-        return genus + (self.node.least() if "minimal" in self.query.parts else ())
+        return genus + (paths_and_places if "minimal" in self.query.parts else ())
 
     def _here(self) -> Iterator[Found]:
         """The map of the node where the search stands, if it is one of the query, and, where it
@@ -202,7 +200,7 @@ class Descent:
         yield one
 
 
-def holds(node: LookAhead, parts: Collection[str]) -> bool:
+def holds(node: Hypothesis, parts: Collection[str]) -> bool:
     """Whether a map has the properties that are only known of the whole."""
     return (
         ("euler" not in parts or node.genus == 0)

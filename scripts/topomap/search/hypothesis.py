@@ -178,7 +178,9 @@ class Hypothesis:
         if out in self.links:
             return [gateway for gateway in self.fitting((self.links[out],)) if self.marked(gateway)]
         near = self.face(out) if self.planar else tuple(g for face in self.faces for g in face)
-        arrivals = [g for g in self.fitting(near) if g != out and self._joins(out, g)]
+        arrivals = [
+            g for g in self.fitting(near) if g != out and self._joins(self.path(out), self.path(g))
+        ]
         if self.bound is None or self.places < self.bound:
             arrivals.append((self.steps + 1) * self.slots)
         return [gateway for gateway in arrivals if self.marked(gateway)]
@@ -194,8 +196,8 @@ class Hypothesis:
         face = self.face(out)
         for gateway in (g for face in self.faces for g in face if g != out):
             rule = self._mistaken(gateway)
-            if rule is None and not self._joins(out, gateway):
-                paths = self.path(out), self.path(gateway)
+            paths = self.path(out), self.path(gateway)
+            if rule is None and not self._joins(*paths):
                 common = self.paths[paths[0]] & self.paths[paths[1]]
                 rule = "twice" if common else "perpendicular"
                 rule = "circular" if paths[0] == paths[1] else rule
@@ -214,10 +216,9 @@ class Hypothesis:
         star = {(other - slot) % self.slots for other in self.experience.views[place]}
         return "landmark" if star == self.experience.views[step] else "view"
 
-    def _joins(self, out: int, arrival: int) -> bool:
-        """Whether a link between the gateways respects the path axiom, and ``perpendicular``:
-        it makes the two paths one, so they are two and share no place."""
-        path, other = self.path(out), self.path(arrival)
+    def _joins(self, path: int, other: int) -> bool:
+        """Whether a link may make these paths one: by the path axiom they are two and share no
+        place; and a map that is to be ``perpendicular`` must stay so."""
         if self.paths[path] & self.paths[other]:
             return False
         return not self.perpendicular or self._squares(self.meets[path], self.meets[other])

@@ -108,9 +108,7 @@ class LookAhead(Hypothesis):
         future, slots, views, last = self.future, self.slots, self.views, self.future.last_of_face
         seen, possible_at = future.arrival[step], self.possible_at
         faces = (self.face(out),) if self.planar else self.faces
-        path = self.path(out)
-        places, meets = self.paths[path], self.meets[path]
-        arrivals = []
+        path, arrivals = self.path(out), []
         for face in faces:
             for gateway in face:
                 if views[gateway] != seen or gateway == out:
@@ -118,13 +116,7 @@ class LookAhead(Hypothesis):
                 place, slot = divmod(gateway, slots)
                 if not possible_at[place] >> (step * slots + slot) & 1:
                     continue
-                other = self.path(gateway)
-                if places & self.paths[other]:
-                    continue
-                crossing = self.meets[other]
-                if self._meets_once and meets & crossing:
-                    continue
-                if self.perpendicular and not self._squares(meets, crossing):
+                if not self._joins(path, self.path(gateway)):
                     continue
                 if self._closed:
                     if due and due != [gateway]:
@@ -136,6 +128,11 @@ class LookAhead(Hypothesis):
                             continue
                 arrivals.append(gateway)
         return arrivals
+
+    def _joins(self, path: int, other: int) -> bool:
+        if self._meets_once and self.meets[path] & self.meets[other]:
+            return False
+        return super()._joins(path, other)
 
     def _due(self, out: int, step: int) -> list[int]:
         """The other pending gateways that only the next step can still link."""
