@@ -40,10 +40,10 @@ class Trial:
     ``by`` is the way that is to give the maps. If ``whole``, no more is to be looked for: ``maps``
     has all maps, or the best ones if the query minimises, or one more than ``limit``. If not,
     ``maps`` has those that were found by now (if the query minimises, the last one is the best of
-    them). ``rest`` gives the others, if they are to come by this search. Or it was given up:
-    because of the size of its tree, or, if there is a ``fault``, because the watch has ended it.
-    The maps may then be ``enough``: ``limit`` maps. ``least`` is what each map costs at least, if
-    there is any, as far as it is proved, or None.
+    them). ``rest`` gives the others, if they are to come by this search. Or it was given up
+    because of the size of its tree; or for good, if ``fault`` says why: the watch has ended it, or
+    it had found ``limit`` maps by then. ``least`` is what each map costs at least, if there is any,
+    as far as it is proved, or None.
 
     Parameters:
         experience, query: what was seen and done, and which maps are asked for.
@@ -60,7 +60,7 @@ class Trial:
         kind: str | None = None,
         limit: int | None = None,
     ):
-        self.by, self.whole, self.enough = CLINGO, False, False
+        self.by, self.whole = CLINGO, False
         self.fault: str | None = None
         self.maps: list[Found] = []
         self.rest: Iterator[Found | None] | None = None
@@ -101,8 +101,10 @@ class Trial:
         except Stopped as stopped:
             self.by, self.fault = SEARCH, str(stopped)
         except TooLarge:
-            self.enough = limit is not None and len(self.maps) >= limit
-            watch.found = len(self.maps) if self.enough else known
+            if limit is not None and len(self.maps) >= limit:
+                self.by, self.fault = SEARCH, "limit"
+            else:
+                watch.found = known
         self.rest = None
         self.least = descent.least
 

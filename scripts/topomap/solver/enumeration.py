@@ -15,7 +15,7 @@ from topomap.runtime.limits import LARGEST
 from topomap.runtime.watch import Attempt, Stopped, Watch
 from topomap.search import traversal
 from topomap.solver import choice, solving
-from topomap.solver.choice import AUTO, CLINGO, Trial
+from topomap.solver.choice import AUTO, CLINGO, SEARCH, Trial
 from topomap.solver.circumscription import circumscribed
 from topomap.solver.share import ALONE, Crew
 from topomap.solver.solving import Way
@@ -23,7 +23,7 @@ from topomap.solver.solving import Way
 WAYS: dict[str, Way] = {
     AUTO: choice.hypotheses,
     CLINGO: solving.hypotheses,
-    choice.SEARCH: traversal.hypotheses,
+    SEARCH: traversal.hypotheses,
 }
 
 
@@ -63,29 +63,7 @@ def every(
     elif query.optimizes:
         yield from filter(None, WAYS[by](experience, query, watch))
     elif by == AUTO:
-        trial = Trial(experience, query, watch, limit=limit)
-        if trial.rest and crew is ALONE and not journal.kept:
-            while trial.maps:
-                yield trial.maps.pop(0)
-            yield from filter(None, trial.rest)
-            return
-        if trial.whole or trial.enough or trial.fault:
-            watch.by = choice.SEARCH
-            yield from trial.maps
-            if fault := trial.fault or ("limit" if trial.enough else None):
-                raise Stopped(fault)
-            return
-        some = False
-        watch.found = 0
-        try:
-            for found in every(experience, query, watch, trial.by, False, journal, crew):
-                some = True
-                yield found
-        except Stopped:
-            if not some and trial.maps:
-                watch.by = choice.SEARCH
-                yield from trial.maps
-            raise
+        yield from _by_what_suits(experience, query, watch, journal, crew, limit)
     elif crew is ALONE and not journal.kept:
         yield from filter(None, WAYS[by](experience, query, watch))
     else:
@@ -117,6 +95,37 @@ def every(
             elif one.at not in known:
                 journal.add(one.at)
                 yield one
+
+
+def _by_what_suits(
+    experience: Experience,
+    query: Query,
+    watch: Watch,
+    journal: Journal,
+    crew: Crew,
+    limit: int | None,
+) -> Iterator[Found]:
+    """All maps of a query, as ``every`` gives them, by the way that has less work to do."""
+    trial = Trial(experience, query, watch, limit=limit)
+    if trial.whole or trial.fault:
+        yield from trial.maps
+        if trial.fault:
+            raise Stopped(trial.fault)
+    elif trial.rest and crew is ALONE and not journal.kept:
+        yield from trial.maps
+        yield from filter(None, trial.rest)
+    else:
+        some = False
+        watch.found = 0  # a journal or a crew needs the maps branch by branch, and so anew
+        try:
+            for found in every(experience, query, watch, trial.by, False, journal, crew):
+                some = True
+                yield found
+        except Stopped:
+            if not some and trial.maps:
+                watch.by = SEARCH
+                yield from trial.maps
+            raise
 
 
 def proved_or_last(coming: Iterator[Found]) -> Iterator[Found]:
