@@ -7,7 +7,7 @@
 #                 follow, questions, the start and solve take, docs/{online,asking,start,solve}.md (an hour;
 #                 BENCH: options, such as BENCH='--only 8x8', BENCH=--quick, BENCH=--help)
 # make figures    draw the pictures of the pages again, docs/figures/
-# make simulate   let robots explore twenty worlds, docs/simulations.json (three minutes)
+# make simulate   let robots explore twenty worlds, docs/simulations.json (seconds)
 # make circumscription   compare both readings of the preference, docs/circumscription.md
 #                 (twenty minutes)
 # make beyond     count what is beyond the paper's table, docs/beyond.json (an hour)

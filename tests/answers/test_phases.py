@@ -438,6 +438,7 @@ def are_true(experience, chain):
 def test_what_a_phase_finds_is_true(chain):
     for number in range(6):
         are_true(toured(random.Random(f"claims {number}"), 20)[0], chain)
+        are_true(toured(random.Random(f"many claims {number}"), 32)[0], chain)
 
 
 @pytest.mark.long

@@ -148,7 +148,7 @@ class _Phases:
         atoms = control.symbolic_atoms
         through = sorted(atom.symbol.arguments[0] for atom in atoms.by_signature("passes_four", 1))
         pairs = [(a, b) for a in through for b in through if a < b]
-        for number, relation in enumerate(("joined", "cross_at_four")):
+        for number, relation in enumerate(("line", "cross_at_four")):
             for asked in self._refuted(control, [Function(relation, pair) for pair in pairs]):
                 self._know("never", *asked.arguments, Number(number))
 
