@@ -581,8 +581,9 @@ def begun(facts: str, experience: Experience, pairs: phase_answers.Pairs, horizo
 
 def sizes() -> list[Query]:
     """What the size of the encodings is taken by: each experience with all the parts, one in
-    four where rules may be waived, one in five of what is asked of the phases, one in seven of what is asked step by step, and a
-    large exploration of which it is known what visits are new."""
+    four where rules may be waived, one in five of what is asked of the phases, one in seven of
+    what is asked step by step, and a large exploration of which it is known what visits are new.
+    """
     files = ("topomap", "bound", "query", *PARTS, "genus", "minimal")
     many = ("-c", "places=99")
     waived = ("topomap", "explain", "perpendicular")
