@@ -6,10 +6,11 @@ import random
 from dataclasses import replace
 from itertools import combinations, combinations_with_replacement, pairwise
 
+import clingo
 import pytest
-from conftest import ENCODINGS, TRIED
+from conftest import ENCODINGS, TRIED, answers
 from oracles import phase_answers as phased
-from oracles.worlds import WORLDS, random_world, with_marker
+from oracles.worlds import WORLDS, random_experience, random_world, with_marker
 from topomap.documents.check import by_definition
 from topomap.model.experience import Experience, observe
 from topomap.model.query import Query
@@ -446,6 +447,35 @@ def test_what_a_phase_finds_is_true(chain):
 def test_what_a_phase_finds_is_often_true(chain):
     for number in range(150):
         are_true(toured(random.Random(f"many claims {number}"), 32)[0], chain)
+
+
+def test_what_contradicts_itself_has_no_map():
+    """Steps that go straight back and see something else: what the phases leave of that has the
+    maps of the whole theory, most often none."""
+    few = 0
+    for seed in range(150):
+        draw = random.Random(f"contradicts {seed}")
+        seen = random_experience(draw, 10)
+        if seen.slots != 4 or seen.steps < 2:
+            continue
+        back = draw.randrange(1, seen.steps)
+        turns = [*seen.turns[:back], 0, *seen.turns[back + 1 :]]
+        views = [{0, turn} | view for turn, view in zip(turns, seen.views, strict=False)]
+        seen = Experience(4, [*views, seen.views[-1]], turns)
+        work = phases._Phases(seen.facts(), ENCODINGS, lambda _: None)
+        work.visits()
+        control = clingo.Control(["0"])
+        control.load(str(ENCODINGS / "phases/topomap.lp"))
+        control.add("base", [], seen.facts() + work.facts())
+        control.ground()
+        maps = set()
+        with control.solve(yield_=True) as models:
+            for model in models:
+                at = sorted([a.number for a in s.arguments] for s in model.symbols(shown=True))
+                maps.add(tuple((place, slot) for _, place, slot in at))
+        assert maps == answers((), seen.facts()), seen.facts()
+        few += not maps
+    assert few > 10
 
 
 def test_each_phase_finds_something():

@@ -231,7 +231,7 @@ class _Runs:
         grid = self.met(links, path, ("crossing",))
         atoms = {f"passes_four({a})" for a in self.through}
         for a, b in combinations(self.runs, 2):
-            atoms |= {f"joined({a},{b})"} if path[a] == path[b] else set()
+            atoms |= {f"line({a},{b})"} if path[a] == path[b] else set()
             atoms |= {f"cross_at_four({a},{b})"} if (path[a], path[b]) in grid else set()
         return frozenset(atoms)
 
