@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import shutil
 import signal
 import subprocess
@@ -78,6 +79,19 @@ def forms(*parts):
     return [form for form in FORMS if all(file.is_file() for file in files[form])]
 
 
+def beyond(facts):
+    """The files of encodings/paper/ for what is told of which the paper does not know."""
+    files = {
+        "marker": "drop",
+        "compass": "compass",
+        "odometry": "shift",
+        "lengths": "length",
+        "closures": "same|apart",
+    }
+    told = {file for file, names in files.items() if re.search(rf"\b(?:{names})\(", facts)}
+    return [f"beyond/{file}" for file in files if file in told]
+
+
 def answers(parts, facts, *arguments, encoding="work"):
     """The set of hypotheses, as tuples of (place, gateway) by step, that stock clingo
     finds; with a preference among the parts, the best ones. Fails on any message of
@@ -93,8 +107,8 @@ def costs(parts, facts, *arguments, encoding="work"):
     optimal = "--opt-mode=optN" in arguments
     options = ["0", *arguments]
     control = clingo.Control(options, logger=lambda _, text: messages.append(text))
-    marker = ["beyond/marker"] * (encoding == "paper" and "drop(" in facts)
-    for part in ("topomap", *marker, *parts):
+    more = beyond(facts) if encoding == "paper" else []
+    for part in ("topomap", *more, *parts):
         control.load(str(FORMS[encoding] / f"{part}.lp"))
     control.add("base", [], facts)
     control.ground([("base", [])])
@@ -123,7 +137,18 @@ def plain(experience):
         {(step, "put") for step in experience.drops}
         | {(step, "took") for step in experience.picks}
         | {(step, "saw") for step in experience.markers},
+        known(experience),
     )
+
+
+def known(experience):
+    """What is known besides views, read from the facts that the encodings get."""
+    numbers = r"(compass|shift|length|same|apart)\((-?\d+),(-?\d+)(?:,(-?\d+))?\)"
+    facts = re.findall(numbers, experience.facts())
+    told = [(name, *(int(number) for number in rest if number)) for name, *rest in facts]
+    if told:
+        told += [("drift", experience.drift), ("stretch", experience.stretch)]
+    return told
 
 
 class Truth:

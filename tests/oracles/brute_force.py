@@ -4,11 +4,13 @@ It shares nothing with the encodings or with the package: it reads bare facts, k
 whole maps as dictionaries, and recomputes each property from its definition. It is
 slow on purpose, and meant for small experiences.
 
-An experience is ``(slots, views, turns, landmarks, marker)``: ``views[t]`` the set of slots
+An experience is ``(slots, views, turns, landmarks, marker, known)``: ``views[t]`` the set of slots
 seen after step t, ``turns[t]`` the turn of step t (``turns[0]`` is unused),
 ``landmarks[t]`` the set of landmarks recognised after step t; ``marker`` is what was done
-with the marker and when, as ``(t, "put")``, ``(t, "took")``, ``(t, "saw")``. A hypothesis is the
-tuple of its ``(place, gateway)`` after each step, as ``at/3`` gives them.
+with the marker and when, as ``(t, "put")``, ``(t, "took")``, ``(t, "saw")``; ``known`` is a list of
+what is known besides views: ``("compass", t, slot)``, ``("shift", t, x, y)``, ``("length", t, d)``,
+``("same", t, u)``, ``("apart", t, u)``, ``("drift", percent)``, ``("stretch", percent)``. A
+hypothesis is the tuple of its ``(place, gateway)`` after each step, as ``at/3`` gives them.
 """
 
 from itertools import combinations
@@ -166,9 +168,52 @@ def marked(marker, at):
     return not ready or sees == here
 
 
+def contradicts(experience, at):
+    """Whether dstates contradict what is known besides views: each statement is held against each
+    pair of steps, by its definition."""
+    slots, _, turns, _, _, known = experience
+    told = {}
+    for name, *rest in known:
+        told.setdefault(name, []).append(rest)
+    last = len(at) - 1
+    compass = {t: slot for t, slot in told.get("compass", [])}
+    shift = {t: (x, y) for t, x, y in told.get("shift", [])}
+    length = {t: d for t, d in told.get("length", [])}
+    (drift,), (stretch,) = told.get("drift", [[10]])[0], told.get("stretch", [[10]])[0]
+    for t, u in combinations(range(last + 1), 2):
+        if at[t][0] != at[u][0]:
+            continue
+        if t in compass and u in compass:
+            # The compass slot of the place's gateway 0 is one, whichever visit tells it.
+            if (compass[t] - at[t][1]) % slots != (compass[u] - at[u][1]) % slots:
+                return True
+        between = range(t + 1, u + 1)
+        if all(step in shift for step in between):
+            moved = [sum(shift[step][axis] for step in between) for axis in (0, 1)]
+            way = sum(abs(shift[step][0]) + abs(shift[step][1]) for step in between)
+            if 100 * max(abs(moved[0]), abs(moved[1])) > drift * way:
+                return True
+    if any(at[t][0] != at[u][0] for t, u in told.get("same", []) if max(t, u) <= last):
+        return True
+    if any(at[t][0] == at[u][0] for t, u in told.get("apart", []) if max(t, u) <= last):
+        return True
+
+    def link(t):
+        place, gateway = at[t - 1]
+        return {(place, (gateway + turns[t]) % slots), at[t]}
+
+    return any(
+        t in length
+        and u in length
+        and link(t) == link(u)
+        and 100 * abs(length[t] - length[u]) > stretch * max(length[t], length[u])
+        for t, u in combinations(range(1, last + 1), 2)
+    )
+
+
 def tree(experience, planar=False, bound=None):
     """All hypotheses by step: a list of lists, one for each step from 0 (Figure 2)."""
-    slots, views, turns, landmarks, marker = experience
+    slots, views, turns, landmarks, marker, known = experience
     levels = [[((0, 0),)]]
     for t in range(1, len(turns)):
         level = []
@@ -182,8 +227,10 @@ def tree(experience, planar=False, bound=None):
                 return turned == set(views[t]) and landmarks[p] == landmarks[t]
 
             if x in before.link:
-                if fits(*before.link[x]) and marked(marker, (*at, before.link[x])):
-                    level.append((*at, before.link[x]))
+                child = *at, before.link[x]
+                if fits(*before.link[x]) and marked(marker, child):
+                    if not (known and contradicts(experience, child)):
+                        level.append(child)
                 continue
             arrivals = [g for g in before.pending() if g != x and fits(*g)]
             if planar:
@@ -192,6 +239,8 @@ def tree(experience, planar=False, bound=None):
                 child = (*at, arrival)
                 after = Hypothesis(experience, child)
                 if after.breaks_path_axiom() or not marked(marker, child):
+                    continue
+                if known and contradicts(experience, child):
                     continue
                 if bound is not None and len(after.stars) > bound:
                     continue

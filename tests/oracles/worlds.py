@@ -56,6 +56,60 @@ def random_experience(draw: random.Random, steps: int, marker: bool = False) -> 
     return observe(made, start, route, *(with_marker(route) if marker else ()))[0]
 
 
+def informed(draw: random.Random, steps: int) -> Experience:
+    """A walk of which more is known than views: some of compass, odometry, lengths, and visits of
+    one place or of two, of some steps or of all, most of it true."""
+    made = random_world(draw)
+    place, slot = start = draw.choice(sorted(made.links))
+    where = {p: (draw.randint(-3, 3), draw.randint(-3, 3)) for p in sorted(made.stars)}
+    long = {}  # of each link
+    route, dstates = [], [start]
+    for _ in range(draw.randint(0, steps)):
+        ahead = (slot + made.slots // 2) % made.slots
+        if ahead not in made.stars[place] or draw.random() < 0.5:
+            ahead = draw.choice(sorted(made.stars[place]))
+        route.append(ahead)
+        place, slot = made.links[place, ahead]
+        dstates.append((place, slot))
+    seen, _ = observe(made, start, route)
+    kinds = {kind for kind in ("compass", "shift", "length", "pairs") if draw.random() < 0.5}
+    rate = draw.choice([1, 1, 0.8, 0.5])
+    wrong = draw.choice([0, 0, 0.05])
+
+    def told(value, other):
+        if draw.random() >= rate:
+            return None
+        return other if draw.random() < wrong else value
+
+    compass, shifts, lengths = [], [], []
+    for step, (place, slot) in enumerate(dstates):
+        compass.append(told(slot, draw.randrange(made.slots)))
+        if step:
+            before = dstates[step - 1][0]
+            moved = [there - here for here, there in zip(where[before], where[place], strict=True)]
+            way = 10 * sum(map(abs, moved))
+            x, y = (10 * one + draw.randint(-way // 20, way // 20) for one in moved)
+            shifts.append(told((x, y), (draw.randint(-30, 30), draw.randint(-30, 30))))
+            out = before, route[step - 1]
+            link = min(out, (place, slot))
+            lengths.append(told(long.setdefault(link, draw.randint(1, 40)), draw.randint(1, 40)))
+    pairs = {"same": [], "apart": []}
+    for _ in range(draw.randint(0, 3)):
+        t, u = draw.randrange(len(dstates)), draw.randrange(len(dstates))
+        true = (dstates[t][0] == dstates[u][0]) != (draw.random() < wrong)
+        if t != u or true:
+            pairs["same" if true else "apart"].append((t, u))
+    return Experience(
+        *(seen.slots, seen.views, seen.turns, seen.landmarks),
+        compass=compass if "compass" in kinds else (),
+        shifts=shifts if "shift" in kinds else (),
+        lengths=lengths if "length" in kinds else (),
+        **(pairs if "pairs" in kinds else {}),
+        drift=draw.choice([0, 5, 10, 30]),
+        stretch=draw.choice([0, 10, 50]),
+    )
+
+
 def with_marker(route: list[int]) -> list[list[int]]:
     """Steps of a route at which the marker might be put down and taken up, at random but the same
     each time."""

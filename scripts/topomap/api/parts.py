@@ -94,7 +94,8 @@ def begin(experience: Experience, timeout: float | None, noisy: bool = False) ->
     allows what may be a misreading; ValueError if the time limit is no number of seconds."""
     demand_experience(experience)
     limit = seconds("timeout", timeout)
-    parse(experience.facts(), "the experience, as facts", noisy)
+    measured = experience.drift, experience.stretch
+    parse(experience.facts(), "the experience, as facts", noisy, *measured)
     return Watch(limit)
 
 

@@ -1,16 +1,21 @@
 """Experiences: what an exploration does and sees."""
 
-from collections.abc import Container, Iterable
+from collections.abc import Callable, Container, Iterable
 from dataclasses import dataclass, fields
+from typing import TypeVar
 
 from topomap.model.terms import spelt
 from topomap.model.topology import Gateway, Place, TopologicalMap
 from topomap.runtime.checks import collection, integer, shown, whole
+from topomap.runtime.limits import LARGEST
 
 DState = tuple[int, int]
 Misread = tuple[int, int | str]  # a step, and a gateway or a landmark that was missed or imagined
 MOST_SLOTS = 10**6  # sums of slots then stay below it
 MARKER = ("drop", "pick", "marker")
+DRIFT, STRETCH = 10, 10  # percent, as encodings/theory/ has them
+Shift = tuple[int, int]  # how far a step moved the agent, in one fixed frame
+Visits = tuple[int, int]  # two visits, each named by its step, the earlier one first
 
 
 @dataclass(frozen=True, init=False)
@@ -23,6 +28,13 @@ class Experience:
     and ``markers`` are the steps after which the marker is put down, taken up and seen. Lists
     will do: ``Experience(4, [[0], [0, 1], [0]], [0, 1])``. What is kept is plain: numbers are
     ``int``, and landmarks are spelt as clingo spells them.
+
+    What is known besides views (semantics: "A compass", "Odometry", "Asserted, and ruled out"):
+    ``compass[t]`` is the compass slot to which the gateway stood at after step t points;
+    ``shifts[t - 1]`` how far step t moved the agent, and ``lengths[t - 1]`` how long it was. Each
+    is None where it is not told, and the whole is empty where it is told of no step. ``same`` and
+    ``apart`` hold pairs of visits that are known to be of one place, or of two. Shifts may be wrong
+    by ``drift`` percent of the way, and lengths by ``stretch`` percent.
     """
 
     slots: int
@@ -32,6 +44,13 @@ class Experience:
     drops: frozenset[int]
     picks: frozenset[int]
     markers: frozenset[int]
+    compass: tuple[int | None, ...]
+    shifts: tuple[Shift | None, ...]
+    lengths: tuple[int | None, ...]
+    same: frozenset[Visits]
+    apart: frozenset[Visits]
+    drift: int
+    stretch: int
 
     def __init__(
         self,
@@ -42,6 +61,14 @@ class Experience:
         drops: Iterable[int] = (),
         picks: Iterable[int] = (),
         markers: Iterable[int] = (),
+        *,
+        compass: Iterable[int | None] = (),
+        shifts: Iterable[Shift | None] = (),
+        lengths: Iterable[int | None] = (),
+        same: Iterable[Visits] = (),
+        apart: Iterable[Visits] = (),
+        drift: int = DRIFT,
+        stretch: int = STRETCH,
     ):
         """What was seen and done. Whether it can be so is told when it is first used: by
         InputError, with the step, as for a file.
@@ -52,6 +79,13 @@ class Experience:
             turns: the turn of each step, from 1, in slots clockwise.
             landmarks: the landmarks that are seen after each step, from 0; by default none.
             drops, picks, markers: the steps after which the marker is put down, taken up, seen.
+            compass: the compass slot of the gateway stood at after each step, from 0, or None; by
+                default none is told.
+            shifts: how far each step, from 1, moved the agent, as (x, y) in whole numbers of any
+                unit, or None; by default none is told.
+            lengths: how long each step was, in whole units, or None; by default none is told.
+            same, apart: pairs of steps after which the agent was at one place, or at two.
+            drift, stretch: how far shifts and lengths may be wrong, in percent.
 
         Raises:
             ValueError: there is not one view more than turns, or not as many sets of landmarks;
@@ -77,7 +111,19 @@ class Experience:
             frozenset(whole(f"{name}: step", step, 0, len(done)) for step in collection(name, of))
             for name, of in (("drops", drops), ("picks", picks), ("markers", markers))
         ]
-        values = integer("slots", slots), seen, done, signs, *marks
+        many = len(seen)
+        north = _each("compass", compass, many, integer)
+        moved = _each("shifts", shifts, many - 1, _shift)
+        measured = _each("lengths", lengths, many - 1, integer)
+        pairs = [
+            frozenset(_visits(name, pair, len(done)) for pair in collection(name, of))
+            for name, of in (("same", same), ("apart", apart))
+        ]
+        percents = whole("drift", drift, 0, LARGEST), whole("stretch", stretch, 0, LARGEST)
+        values = (
+            *(integer("slots", slots), seen, done, signs, *marks),
+            *(north, moved, measured, *pairs, *percents),
+        )
         for one, value in zip(fields(self), values, strict=True):
             object.__setattr__(self, one.name, value)
 
@@ -93,12 +139,41 @@ class Experience:
             name: frozenset(step for step in getattr(self, name) if step <= horizon)
             for name in ("drops", "picks", "markers")
         }
+        pairs = {
+            name: frozenset(pair for pair in getattr(self, name) if max(pair) <= horizon)
+            for name in ("same", "apart")
+        }
         return self._but(
             views=self.views[: horizon + 1],
             turns=self.turns[:horizon],
             landmarks=self.landmarks[: horizon + 1],
+            compass=_told(self.compass[: horizon + 1]),
+            shifts=_told(self.shifts[:horizon]),
+            lengths=_told(self.lengths[:horizon]),
             **marks,
+            **pairs,
         )
+
+    def within(self, drift: int | None = None, stretch: int | None = None) -> "Experience":
+        """The same experience, where shifts may be wrong by ``drift`` percent and lengths by
+        ``stretch`` percent (None: as before)."""
+        changed = {"drift": drift, "stretch": stretch}
+        return self._but(
+            **{key: whole(key, value, 0, LARGEST) for key, value in changed.items() if value is not None}
+        )
+
+    def knowing(self, same: Iterable[Visits] = (), apart: Iterable[Visits] = ()) -> "Experience":
+        """The same experience, where more pairs of visits are known to be of one place, or of
+        two."""
+        more = [{_visits(name, pair, self.steps) for pair in of} for name, of in
+                (("same", same), ("apart", apart))]
+        return self._but(same=self.same | more[0], apart=self.apart | more[1])
+
+    def constants(self) -> list[str]:
+        """The options of clingo that tell how far shifts and lengths may be wrong."""
+        told = [f"drift={self.drift}"] * bool(self.shifts)
+        told += [f"stretch={self.stretch}"] * bool(self.lengths)
+        return [option for one in told for option in ("-c", one)]
 
     def _but(self, **changed: object) -> "Experience":
         """The same experience but for what is changed, which is known to be plain: it is not
@@ -141,6 +216,10 @@ class Experience:
     def facts(self) -> str:
         """The experience as facts, one line a step."""
         lines = [f"slots({self.slots})."]
+        pairs: dict[int, list[str]] = {}  # by the later step
+        for name in ("same", "apart"):
+            for one, other in sorted(getattr(self, name)):
+                pairs.setdefault(other, []).append(f"{name}({one},{other}).")
         for step, (view, landmarks) in enumerate(zip(self.views, self.landmarks, strict=True)):
             line = [f"turn({step},{self.turns[step - 1]})."] if step else []
             line += [f"view({step},{slot})." for slot in sorted(view)]
@@ -148,8 +227,20 @@ class Experience:
             line += [f"marker({step})."] * (step in self.markers)
             line += [f"pick({step})."] * (step in self.picks)
             line += [f"drop({step})."] * (step in self.drops)
+            line += self._known(step, pairs.get(step, ()))
             lines.append(" ".join(line))
         return "\n".join(lines) + "\n"
+
+    def _known(self, step: int, pairs: Iterable[str]) -> list[str]:
+        """The facts that tell of a step what is known besides views."""
+        told = [*pairs]
+        if self.compass and (slot := self.compass[step]) is not None:
+            told.append(f"compass({step},{slot}).")
+        if step and self.shifts and (shift := self.shifts[step - 1]) is not None:
+            told.append(f"shift({step},{shift[0]},{shift[1]}).")
+        if step and self.lengths and (length := self.lengths[step - 1]) is not None:
+            told.append(f"length({step},{length}).")
+        return told
 
     def map_of(self, at: tuple[DState, ...]) -> TopologicalMap:
         """The map of a hypothesis, given the dstate after each step (``at/3``)."""
@@ -160,6 +251,45 @@ class Experience:
             links[out], links[arrival] = arrival, out
         landmarks = {place: self.landmarks[place] for place in stars}
         return TopologicalMap(self.slots, stars, links, landmarks)
+
+
+T = TypeVar("T")
+
+
+def _told(values: tuple[T | None, ...]) -> tuple[T | None, ...]:
+    """The values, or nothing if none is told."""
+    return values if any(value is not None for value in values) else ()
+
+
+def _each(
+    name: str, given: Iterable[T | None], many: int, plain: Callable[[str, T], T]
+) -> tuple[T | None, ...]:
+    """A value or None for each of so many steps; nothing if none is told."""
+    values = tuple(
+        None if value is None else plain(f"{name}[{number}]", value)
+        for number, value in enumerate(collection(name, given))
+    )
+    if values and len(values) != many:
+        raise ValueError(f"{name}: {len(values)} are given, {many} are wanted")
+    return _told(values)
+
+
+def _shift(name: str, given: Shift) -> Shift:
+    x, y = _two(name, given, "(x, y)")
+    return integer(name, x), integer(name, y)
+
+
+def _visits(name: str, given: Visits, last: int) -> Visits:
+    """Two visits, the earlier one first."""
+    one, other = (whole(f"{name}: step", step, 0, last) for step in _two(name, given, "two steps"))
+    return min(one, other), max(one, other)
+
+
+def _two(name: str, given: Iterable[int], what: str) -> tuple[int, int]:
+    pair = tuple(collection(name, given))
+    if len(pair) != 2:
+        raise ValueError(f"{name}: {shown(given)} is not {what}")
+    return pair[0], pair[1]
 
 
 def _is_plain(given: object, *kinds: type) -> bool:

@@ -1,8 +1,8 @@
 """The facts of instance files: experiences are read from them, and their faults told.
 
 An instance file is data: ground facts ``slots/1``, ``view/2``, ``turn/2``, ``landmark/2``,
-``drop/1``, ``pick/1`` and ``marker/1`` (see ``encodings/topomap.lp``), and comments. Anything
-else is refused.
+``drop/1``, ``pick/1``, ``marker/1``, ``compass/2``, ``shift/3``, ``length/2``, ``same/2`` and
+``apart/2`` (see ``encodings/topomap.lp``), and comments. Anything else is refused.
 """
 
 import difflib
@@ -11,6 +11,7 @@ import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 import clingo
 
@@ -18,6 +19,7 @@ from topomap.model.experience import MARKER, MOST_SLOTS, Experience, marker_faul
 from topomap.model.terms import STRING, cut_short, ground, quoted
 from topomap.runtime import files
 from topomap.runtime.errors import InputError
+from topomap.runtime.limits import LARGEST
 
 SIGNATURES = {  # the facts of an instance
     "slots": "slots(K)",
@@ -25,23 +27,41 @@ SIGNATURES = {  # the facts of an instance
     "turn": "turn(T,S)",
     "landmark": "landmark(T,L)",
     **{name: f"{name}(T)" for name in MARKER},
+    "compass": "compass(T,S)",
+    "shift": "shift(T,X,Y)",
+    "length": "length(T,D)",
+    "same": "same(T,U)",
+    "apart": "apart(T,U)",
 }
+PAIRS = ("same", "apart")
 HINT = " (misread? solve --noise allows for that)"
 
 
-def read(path: str | Path, noisy: bool = False) -> Experience:
+def read(
+    path: str | Path, noisy: bool = False, drift: int | None = None, stretch: int | None = None
+) -> Experience:
     """The experience in an instance file; a ``noisy`` one may turn to gateways that were not
-    seen, and views may lack slot 0. Raises InputError, one line, on bad input: the first of
-    the faults that ``Facts.faults`` finds."""
-    return parse(files.read_text(path), str(path), noisy)
+    seen, and views may lack slot 0; shifts and lengths may be wrong by ``drift`` and ``stretch``
+    percent. Raises InputError, one line, on bad input: the first of the faults that
+    ``Facts.faults`` finds, or what is too large for clingo."""
+    return parse(files.read_text(path), str(path), noisy, drift, stretch)
 
 
-def parse(text: str, source: str, noisy: bool = False) -> Experience:
+def parse(
+    text: str,
+    source: str,
+    noisy: bool = False,
+    drift: int | None = None,
+    stretch: int | None = None,
+) -> Experience:
     """The experience in the text of an instance; ``source`` names it in errors."""
     facts = Facts()
     for fault in facts.faults(text, noisy):
         raise InputError(fault.of(source))
-    return facts.experience()
+    experience = facts.experience().within(drift, stretch)
+    if fault := range_fault(experience):
+        raise InputError(fault.of(source))
+    return experience
 
 
 @dataclass(frozen=True)
@@ -67,8 +87,10 @@ class Facts:
     """The facts of an instance, each with the line in which it stands first.
 
     ``views[t]``, ``turns[t]`` and ``landmarks[t]`` hold what is told of step t, ``marks`` the
-    steps of each name of MARKER, ``steps`` each step of which anything is told. ``unread`` is
-    the number of statements that are no facts of an instance.
+    steps of each name of MARKER, ``steps`` each step of which anything is told. ``known[name][t]``
+    holds the numbers that are told by compass/2, shift/3 or length/2, and ``pairs[name]`` the
+    pairs of same/2 or apart/2, as they are told. ``unread`` is the number of statements that are no
+    facts of an instance.
     """
 
     slots: dict[int, int] = field(default_factory=dict)
@@ -76,6 +98,12 @@ class Facts:
     turns: dict[int, dict[int, int]] = field(default_factory=dict)
     landmarks: dict[int, dict[str, int]] = field(default_factory=dict)
     marks: dict[str, dict[int, int]] = field(default_factory=lambda: {name: {} for name in MARKER})
+    known: dict[str, dict[int, dict[tuple[int, ...], int]]] = field(
+        default_factory=lambda: {name: {} for name in ("compass", "shift", "length")}
+    )
+    pairs: dict[str, dict[tuple[int, int], int]] = field(
+        default_factory=lambda: {name: {} for name in PAIRS}
+    )
     steps: dict[int, int] = field(default_factory=dict)
     unread: int = 0
 
@@ -108,6 +136,13 @@ class Facts:
         self.steps.setdefault(first, line)
         if name in MARKER:
             self.marks[name].setdefault(first, line)
+        elif name in PAIRS:
+            other = arguments[1].number
+            self.steps.setdefault(other, line)
+            self.pairs[name].setdefault((first, other), line)
+        elif name in self.known:
+            numbers = tuple(argument.number for argument in arguments[1:])
+            self.known[name].setdefault(first, {}).setdefault(numbers, line)
         elif name == "landmark":
             self.landmarks.setdefault(first, {}).setdefault(str(arguments[1]), line)
         else:
@@ -147,6 +182,7 @@ class Facts:
             whole = whole and turned
             yield from self._turn_faults(step, slots, noisy)
             yield from self._view_faults(step, slots, noisy, turned)
+            yield from self._known_faults(step, slots)
             marks = {name: self.marks[name][step] for name in MARKER if step in self.marks[name]}
             if whole and marks:
                 if fault := marker_fault(marks, out):
@@ -182,6 +218,23 @@ class Facts:
             said = f"the view lacks slot 0, the gateway where the agent stands{HINT}"
             yield Fault(said, min(view.values()), step, lacks=True)
 
+    def _known_faults(self, step: int, slots: int | None) -> Iterator[Fault]:
+        for name, what in (("compass", "compass"), ("shift", "shift"), ("length", "length")):
+            told = self.known[name].get(step, {})
+            if told and step == 0 and name != "compass":
+                said = f"there is a {what}, but step 1 is the first that moves"
+                yield Fault(said, min(told.values()), step)
+            if len(told) > 1:
+                yield Fault(f"more than one {what}", sorted(told.values())[1], step)
+        for (slot,), line in self.known["compass"].get(step, {}).items():
+            if slots is not None and not 0 <= slot < slots:
+                yield Fault(f"compass slot {slot} is not in 0..{slots - 1}", line, step)
+        for (length,), line in self.known["length"].get(step, {}).items():
+            if length <= 0:
+                yield Fault(f"length {length} is not above 0", line, step)
+        if line := self.pairs["apart"].get((step, step)):
+            yield Fault("it is told to be of another place than itself", line, step)
+
     def experience(self) -> Experience:
         """The experience that the facts make, if they have no fault."""
         (slots,) = self.slots
@@ -192,7 +245,32 @@ class Facts:
             tuple(next(iter(self.turns[step])) for step in steps[1:]),
             tuple(frozenset(self.landmarks.get(step, ())) for step in steps),
             *(frozenset(self.marks[name]) for name in MARKER),
+            compass=self._each("compass", steps),
+            shifts=self._each("shift", steps[1:]),
+            lengths=self._each("length", steps[1:]),
+            **{name: self.pairs[name] for name in PAIRS},
         )
+
+    def _each(self, name: str, steps: range) -> list[Any]:
+        """What is told of each step, or None: a number, or if there are several, all of them."""
+        told = (next(iter(self.known[name].get(step, ())), None) for step in steps)
+        return [one[0] if one and len(one) == 1 else one for one in told] if self.known[name] else []
+
+
+def range_fault(experience: Experience) -> Fault | None:
+    """Which step's shift or length leaves what clingo's numbers hold, when it is multiplied by 100
+    or by the percent that it may be wrong by; those of shifts are summed."""
+    far, most = 0, LARGEST // max(100, experience.drift)
+    for step, shift in enumerate(experience.shifts, 1):
+        far += abs(shift[0]) + abs(shift[1]) if shift else 0
+        if far > most:
+            said = f"the shifts up to here come to {far}; with this drift they may come to {most}"
+            return Fault(said, step=step)
+    most = LARGEST // max(100, experience.stretch)
+    for step, length in enumerate(experience.lengths, 1):
+        if length is not None and length > most:
+            return Fault(f"length {length} is above {most}, the most with this stretch", step=step)
+    return None
 
 
 def slots_fault(slots: int) -> str | None:
@@ -220,7 +298,8 @@ def misfit(fact: clingo.Symbol, forms: Mapping[str, str] = SIGNATURES) -> str | 
         return f"{text} is not a fact over {every}"
     numbers = arguments[:1] if name == "landmark" else arguments
     if any(argument.type != clingo.SymbolType.Number for argument in numbers):
-        return f"{text}: a step or a slot is a whole number"
+        what = "a shift or a length" if name in ("shift", "length") else "a slot"
+        return f"{text}: a step or {what} is a whole number"
     return None
 
 

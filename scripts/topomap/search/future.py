@@ -11,6 +11,7 @@ from collections import Counter, defaultdict
 from functools import lru_cache
 
 from topomap.model.experience import Experience
+from topomap.search.evidence import Evidence
 from topomap.search.hypothesis import Hypothesis
 
 # Visits T < U of one place, and by how many slots U stands clockwise of where T stands.
@@ -36,6 +37,7 @@ class Future:
 
     def __init__(self, experience: Experience, kinds: dict[int, int]):
         self.experience, self.slots, self.kinds = experience, experience.slots, kinds
+        self.evidence = Evidence(experience)
         self.turns = [0, *(turn % self.slots for turn in experience.turns)]
         steps = range(1, experience.steps + 1)
         self.out = [0] + [kinds[(t - 1) * self.slots + self.turns[t]] for t in steps]
@@ -166,7 +168,8 @@ class Future:
         The same is seen at both visits of such a pair, and they are not on one straight run of
         steps (the path axiom). What follows from the pair must be possible, too: if both visits
         leave by one gateway, or arrived by one, or if one leaves by the gateway by which the other
-        arrived, then the visits at the other ends of these links are of one place."""
+        arrived, then the visits at the other ends of these links are of one place, and the two steps
+        along the link are of like length. And the pair agrees with compass and odometry."""
         by_kind: dict[int, list[int]] = defaultdict(list)
         for gateway, kind in self.kinds.items():
             by_kind[kind].append(gateway)
@@ -185,11 +188,15 @@ class Future:
             for gateway in gateways:
                 before, slot = divmod(gateway, slots)
                 if before < visit and not of[before] & of[visit]:
-                    pairs.add((before, visit, slot))
+                    if not (self.evidence and self.evidence.refuses(before, visit, slot)):
+                        pairs.add((before, visit, slot))
         asked_by: dict[Pair, list[Pair]] = defaultdict(list)
         wrong = []
         for pair in pairs:
-            for one, other, apart in self._following(*pair):
+            for (one, other, apart), steps in self._following(*pair):
+                if self.evidence.lengths and self.evidence.unequal(*steps):
+                    wrong.append(pair)
+                    break
                 if one == other:
                     following = None if apart % slots else pair
                 else:
@@ -209,16 +216,19 @@ class Future:
                 wrong += asked_by[pair]
         return pairs
 
-    def _following(self, one: int, other: int, apart: int) -> list[Pair]:
-        """What follows if two visits are of one place: more such visits, in any order."""
+    def _following(
+        self, one: int, other: int, apart: int
+    ) -> list[tuple[Pair, tuple[int, int]]]:
+        """What follows if two visits are of one place: more such visits, in any order, each with
+        the two steps along one link of which it follows."""
         turns, slots, last = self.turns, self.slots, self.experience.steps
         pairs = []
         if other < last and turns[one + 1] == (apart + turns[other + 1]) % slots:
-            pairs.append((one + 1, other + 1, 0))
+            pairs.append(((one + 1, other + 1, 0), (one + 1, other + 1)))
         if one > 0 and apart == 0:
-            pairs.append((one - 1, other - 1, turns[one] - turns[other]))
+            pairs.append(((one - 1, other - 1, turns[one] - turns[other]), (one, other)))
         if turns[one + 1] == apart:
-            pairs.append((one + 1, other - 1, -turns[other]))
+            pairs.append(((one + 1, other - 1, -turns[other]), (one + 1, other)))
         if one > 0 and other < last and (apart + turns[other + 1]) % slots == 0:
-            pairs.append((one - 1, other + 1, turns[one]))
+            pairs.append(((one - 1, other + 1, turns[one]), (one, other + 1)))
         return pairs

@@ -5,19 +5,24 @@ is changed in place: a step is entered, and undone. A gateway is the number
 ``place * slots + slot``; a place is named by the step at which it was first visited.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from itertools import combinations
 from typing import Any, NamedTuple
 
 from topomap.model.experience import DState, Experience
 from topomap.model.topology import TopologicalMap
+from topomap.search.evidence import RULES as KNOWN
+from topomap.search.evidence import Evidence
 
 OFTEN = 500  # nodes between two looks at the clock
 Face = tuple[int, ...]
 # What refuses an arrival: another view is seen there, or other landmarks; the marker is seen and
-# does not lie there, or lies there and is not seen; a place would be on a path twice, or the path
-# circular; and what was asked for.
-RULES = ("view", "landmark", "marker", "twice", "circular", "planarity", "perpendicular", "bound")
+# does not lie there, or lies there and is not seen; what is known besides views; a place would be on
+# a path twice, or the path circular; and what was asked for.
+RULES = (
+    *("view", "landmark", "marker", *KNOWN),
+    *("twice", "circular", "planarity", "perpendicular", "bound"),
+)
 
 
 class Link(NamedTuple):
@@ -67,6 +72,11 @@ class Hypothesis:
                 star = frozenset((other - slot) % self.slots for other in view)
                 self.views[first + slot] = numbers.setdefault((star, landmarks), len(numbers))
         self.marker = experience.marker()
+        self.evidence = Evidence(experience)
+        # Of each place its visits, and of each link (by the lower of its gateways) the steps along
+        # it, if these are asked for.
+        self.visits: dict[int, list[int]] = {0: [0]}
+        self.steps_along: dict[int, list[int]] = {}
         self.steps = 0  # that were entered
         self.at = [0]
         self.links: dict[int, int] = {}
@@ -170,20 +180,42 @@ class Hypothesis:
         told = self.marker[self.steps + 1]
         return told is None or told[1] == (gateway // self.slots == self.at[told[0]] // self.slots)
 
+    def denied(self, gateway: int) -> str | None:
+        """The first rule of ``evidence`` by which the next step does not arrive there, or None."""
+        evidence, step = self.evidence, self.steps + 1
+        place, slot = divmod(gateway, self.slots)
+        for visit in self.visits.get(place, ()):
+            turn = (slot - self.at[visit]) % self.slots
+            if rule := evidence.refuses(visit, step, turn):
+                return rule
+        for earlier in evidence.same.get(step, ()):
+            if self.at[earlier] // self.slots != place:
+                return "same"
+        along = self.steps_along.get(min(self.out(), gateway), ()) if evidence.lengths else ()
+        return "length" if any(evidence.unequal(other, step) for other in along) else None
+
+    def allowed(self, arrivals: Iterable[int]) -> list[int]:
+        """Those gateways that agree with what the next step sees of the marker, and with what is
+        known besides views."""
+        marked = [gateway for gateway in arrivals if self.marked(gateway)]
+        if not self.evidence:
+            return marked
+        return [gateway for gateway in marked if not self.denied(gateway)]
+
     def children(self) -> list[int]:
         """Where the next step can arrive: the gateways of known places, and gateway 0 of
         a new one. Where the link is known, its other end, if the view is the predicted one.
         """
         out = self.out()
         if out in self.links:
-            return [gateway for gateway in self.fitting((self.links[out],)) if self.marked(gateway)]
+            return self.allowed(self.fitting((self.links[out],)))
         near = self.face(out) if self.planar else tuple(g for face in self.faces for g in face)
         arrivals = [
             g for g in self.fitting(near) if g != out and self._joins(self.path(out), self.path(g))
         ]
         if self.bound is None or self.places < self.bound:
             arrivals.append((self.steps + 1) * self.slots)
-        return [gateway for gateway in arrivals if self.marked(gateway)]
+        return self.allowed(arrivals)
 
     def tried(self) -> Iterator[tuple[int, str | None]]:
         """Where the next step might arrive: at the other end of its link; or if that is not
@@ -206,13 +238,14 @@ class Hypothesis:
             yield gateway, rule
         new = (self.steps + 1) * self.slots
         full = self.bound is not None and self.places >= self.bound
-        yield new, "marker" if not self.marked(new) else "bound" if full else None
+        refused = "marker" if not self.marked(new) else self.denied(new)
+        yield new, refused or ("bound" if full else None)
 
     def _mistaken(self, gateway: int) -> str | None:
         """The first rule by which what the next step sees refuses this gateway, or None."""
         step, (place, slot) = self.steps + 1, divmod(gateway, self.slots)
         if self.views[gateway] == self.views[step * self.slots]:
-            return None if self.marked(gateway) else "marker"
+            return self.denied(gateway) if self.marked(gateway) else "marker"
         star = {(other - slot) % self.slots for other in self.experience.views[place]}
         return "landmark" if star == self.experience.views[step] else "view"
 
@@ -238,6 +271,9 @@ class Hypothesis:
         self._trail.append(None if out in self.links else self._add_link(out, arrival))
         self.at.append(arrival)
         self.steps += 1
+        if self.evidence:
+            self.visits.setdefault(arrival // self.slots, []).append(self.steps)
+            self.steps_along.setdefault(min(out, arrival), []).append(self.steps)
 
     def _add_link(self, out: int, arrival: int) -> Link:
         place, step = arrival // self.slots, self.steps + 1
@@ -275,6 +311,9 @@ class Hypothesis:
         link = self._trail.pop()
         arrival = self.at.pop()
         step, self.steps = self.steps, self.steps - 1
+        if self.evidence:
+            self.visits[arrival // self.slots].pop()
+            self.steps_along[min(self.out(), arrival)].pop()
         if link is None:
             return
         del self.links[link.out], self.links[arrival], self._joined[link.other]

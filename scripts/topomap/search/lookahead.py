@@ -74,9 +74,9 @@ class LookAhead(Hypothesis):
             room = self.bound is None or self.places < self.bound
             if room and not due and self._makes_place(out, step):
                 arrivals.append(step * self.slots)
-        if self.marker[step] is None:
+        if self.marker[step] is None and not self.evidence:
             return arrivals
-        return [gateway for gateway in arrivals if self.marked(gateway)]
+        return self.allowed(arrivals)
 
     def _known(self, out: int, step: int) -> list[int]:
         """The other end of a link, if the next step can arrive there and what is pending can wait

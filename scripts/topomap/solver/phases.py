@@ -91,7 +91,7 @@ def found(
     bounded, square = _bounded(experience, query), _square(experience, query)
     if query.horizon is not None:
         experience = experience.cut(query.horizon)
-    work = _Phases(experience.facts(), folder, heed)
+    work = _Phases(experience.facts(), folder, heed, experience.constants())
     say("which visits can be of one place")
     few = work.visits()
     if bounded and not square:
@@ -112,8 +112,9 @@ def found(
 
 
 class _Phases:
-    def __init__(self, facts: str, folder: Path, heed: Heed):
+    def __init__(self, facts: str, folder: Path, heed: Heed, constants: Sequence[str] = ()):
         self._facts, self._folder, self._heed = facts, folder, heed
+        self._constants = constants  # options of clingo
         self._pairs: list[Symbol] = []  # comparable/3 and iff/6
         self._found: list[Symbol] = []
 
@@ -123,7 +124,7 @@ class _Phases:
         return "phases.\n" + "".join(f"{symbol}.\n" for symbol in [*self._pairs, *found])
 
     def _grounded(self, *files: str, arguments: Iterable[str] = ()) -> clingo.Control:
-        control = clingo.Control([*arguments])
+        control = clingo.Control([*self._constants, *arguments])
         self._heed(control)
         for file in files:
             control.load(str(self._folder / f"{file}.lp"))

@@ -46,6 +46,18 @@ def control(
     return made
 
 
+def beyond(experience: Experience) -> list[str]:
+    """The files of encodings/paper/ for what is told of which the paper does not know."""
+    needed = {
+        "marker": experience.drops,
+        "compass": experience.compass,
+        "odometry": experience.shifts,
+        "lengths": experience.lengths,
+        "closures": experience.same or experience.apart,
+    }
+    return [f"beyond/{name}" for name, told in needed.items() if told]
+
+
 class Program:
     """A query's program, with more facts, grounded when it is first solved."""
 
@@ -53,12 +65,13 @@ class Program:
         self.asked = experience, query
         self.facts = facts
         self._phased = query.encoding == "work" and phases.serve(experience, query)
-        how: tuple[Sequence[str], ...] = ()
+        entry, options = ["topomap"], experience.constants()
         if self._phased:
-            how = phases.program(experience, query)
-        elif query.encoding == "paper" and experience.drops:
-            how = (["topomap", "beyond/marker"],)
-        self.control = control(query, experience.facts() + facts, *how)
+            entry, more = phases.program(experience, query)
+            options += more
+        elif query.encoding == "paper":
+            entry += beyond(experience)
+        self.control = control(query, experience.facts() + facts, entry, options)
         self._grounded = self._interrupted = False
         self.changed = False  # whether rules were added by which it has fewer answers
         self._solved = self.control  # now or next

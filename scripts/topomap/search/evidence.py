@@ -1,0 +1,70 @@
+"""What is known besides views, asked of two visits, or of two steps: compass, odometry, lengths, and
+visits that are known to be of one place or of two.
+
+Written from the definitions (semantics: "Beyond the paper"), not from the encodings.
+"""
+
+from collections import defaultdict
+
+from topomap.model.experience import Experience
+
+# What refuses an arrival, apart from what is seen.
+RULES = ("compass", "odometry", "apart", "same", "length")
+
+
+class Evidence:
+    """What an experience tells besides views."""
+
+    def __init__(self, experience: Experience):
+        self.slots, self.drift, self.stretch = (
+            experience.slots,
+            experience.drift,
+            experience.stretch,
+        )
+        self.lengths = (None, *experience.lengths) if experience.lengths else ()
+        self._compass = experience.compass
+        # Of each visit: where the unbroken row of shifts began that ends there, where it is by
+        # these, and how long the way was.
+        self._track: list[tuple[int, int, int, int]] = []
+        begun = x = y = way = 0
+        for step, shift in enumerate((None, *experience.shifts) if experience.shifts else ()):
+            if shift is None:
+                begun, x, y, way = step, 0, 0, 0
+            else:
+                x, y, way = x + shift[0], y + shift[1], way + abs(shift[0]) + abs(shift[1])
+            self._track.append((begun, x, y, way))
+        self._apart = experience.apart
+        # Of each visit, the earlier ones that are known to be of its place.
+        self.same: dict[int, list[int]] = defaultdict(list)
+        for one, other in experience.same:
+            if one != other:
+                self.same[other].append(one)
+        told = self.lengths or self._compass or self._track or self._apart or self.same
+        self._told = bool(told)
+
+    def __bool__(self) -> bool:
+        """Whether anything is told."""
+        return self._told
+
+    def refuses(self, one: int, other: int, turn: int) -> str | None:
+        """The first of ``RULES`` by which two visits, the earlier one first, are not of one place
+        where the later one stands so many slots clockwise of the earlier one; or None."""
+        if self._compass:
+            before, after = self._compass[one], self._compass[other]
+            if before is not None and after is not None and (before + turn - after) % self.slots:
+                return "compass"
+        if self._track:
+            begun, x, y, way = self._track[one]
+            since, u, v, more = self._track[other]
+            if begun == since and 100 * max(abs(x - u), abs(y - v)) > self.drift * (more - way):
+                return "odometry"
+        return "apart" if (one, other) in self._apart else None
+
+    def unequal(self, step: int, other: int) -> bool:
+        """Whether two steps are too unlike in length to be along one link."""
+        if not self.lengths:
+            return False
+        one, two = self.lengths[step], self.lengths[other]
+        if one is None or two is None:
+            return False
+        return 100 * abs(one - two) > self.stretch * max(one, two)
