@@ -4,14 +4,19 @@ ahead, brute force, and both checkers."""
 
 import random
 
+import clingo
 import pytest
 from conftest import ENCODINGS, TRIED, Truth, answers
-from oracles.worlds import informed
+from oracles.brute_force import certain
+from oracles.worlds import informed, told
+from topomap.documents.check import by_definition, by_rules
 from topomap.model.experience import Experience
 from topomap.model.query import Query
 from topomap.runtime.watch import Watch
 from topomap.search.descent import Descent
 from topomap.search.traversal import depth_first, root
+from topomap.solver import phases
+from topomap.solver.online import OnlineSolver
 
 
 def searched(experience, **asked):
@@ -36,8 +41,66 @@ def agree(experience):
     assert searched(experience) == {*truth.final}, facts
     for parts in ((), ("closed",), ("planar", "closed"), ("boundary", "closed")):
         assert ahead(experience, *parts) == truth.having(*parts), (parts, facts)
+    checked(experience, truth)
     TRIED["explorations with compass, odometry, lengths or known closures"] += 1
     return truth
+
+
+def checked(experience, truth):
+    """Both checkers pass the hypotheses, and say the same of what is one without that knowledge;
+    a hypothesis of this is one with that knowledge if and only if nothing is violated."""
+    bare = Experience(experience.slots, experience.views, experience.turns, experience.landmarks)
+    for at in sorted(Truth(bare).final)[:30]:
+        told = [(step, place, slot) for step, (place, slot) in enumerate(at)]
+        found = by_rules(experience, told)
+        assert found == by_definition(experience, told), (at, experience.facts())
+        assert (not found) == (at in truth.final), (at, found, experience.facts())
+        for rule, _ in found:
+            TRIED[f"maps that violate {rule}"] += 1
+
+
+@pytest.mark.parametrize("block", range(3))
+def test_step_by_step(block):
+    """After each step the hypotheses are those of the beginning so far; what is taken back leaves
+    no trace."""
+    for number in range(25):
+        draw = random.Random(f"informed online {block}/{number}")
+        seen = informed(draw, 7)
+        levels = Truth(seen).levels
+        follower = OnlineSolver(seen.slots, told(seen, 0), drift=seen.drift, stretch=seen.stretch)
+        step = 0
+        while step < seen.steps:
+            if step and draw.random() < 0.2:
+                follower.undo()
+                step -= 1
+                continue
+            step += 1
+            follower.step(told(seen, step))
+            assert follower.experience == seen.cut(step)
+            status = follower.status(Watch(None))
+            assert status.hypotheses == len(levels[step]), seen.facts()
+            certain_ = certain(levels[step]) if levels[step] else (set(), set())
+            assert (status.certain.same, status.certain.new) == certain_
+        TRIED["explorations with more than views, step by step"] += 1
+
+
+@pytest.mark.parametrize("block", range(2))
+def test_phases(block):
+    """What the phases leave has the maps of the whole theory."""
+    for number in range(60):
+        seen = informed(random.Random(f"informed phases {block}/{number}"), 9)
+        work = phases._Phases(seen.facts(), ENCODINGS, lambda _: None, seen.constants())
+        work.visits()
+        control = clingo.Control(["0", *seen.constants()])
+        control.load(str(ENCODINGS / "phases/topomap.lp"))
+        control.add("base", [], seen.facts() + work.facts())
+        control.ground()
+        maps = set()
+        with control.solve(yield_=True) as models:
+            for model in models:
+                at = sorted([a.number for a in s.arguments] for s in model.symbols(shown=True))
+                maps.add(tuple((place, slot) for _, place, slot in at))
+        assert maps == {*Truth(seen).final}, seen.facts()
 
 
 @pytest.mark.parametrize("block", range(4))

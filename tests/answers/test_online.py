@@ -8,7 +8,8 @@ import clingo
 import pytest
 from conftest import ENCODINGS, ROOT, TRIED, plain
 from oracles.brute_force import Hypothesis, best, certain, tree
-from oracles.worlds import WORLDS, marks, random_experience
+from oracles.worlds import WORLDS, random_experience, told
+from topomap.model.experience import Step
 from topomap.model.facts import read
 from topomap.model.query import Query
 from topomap.runtime.watch import Watch
@@ -21,14 +22,12 @@ WATCH = Watch()
 
 
 def begun(experience, planar=False, bound=None, most=online.MOST_COUNTED):
-    start = experience.views[0], experience.landmarks[0]
-    return OnlineSolver(experience.slots, *start, planar, bound, most, marks(experience, 0))
+    measured = experience.drift, experience.stretch
+    return OnlineSolver(experience.slots, told(experience, 0), planar, bound, most, *measured)
 
 
 def go(follower, experience, step):
-    turn = experience.turns[step - 1]
-    seen = experience.views[step], experience.landmarks[step], marks(experience, step)
-    follower.step(turn, *seen)
+    follower.step(told(experience, step))
 
 
 def agrees(status, experience, level):
@@ -149,7 +148,7 @@ def test_steps_that_were_taken_back_leave_no_trace():
                 out = max(known.drops, default=-1) >= max([0, *known.picks])
                 marked = draw.choice([["marker"], ["pick"], []] if out else [["drop"], []])
                 sign = frozenset(draw.choice(["", "a"]))
-                follower.step(turn, frozenset(view), sign, frozenset(marked))
+                follower.step(Step(turn, frozenset(view), sign, frozenset(marked)))
                 if draw.random() < 0.5:
                     follower.status(WATCH)
             back = follower.experience.steps - step
@@ -167,17 +166,17 @@ def test_steps_that_were_taken_back_leave_no_trace():
 
 
 def test_no_hypothesis_is_left_and_undo_mends_it():
-    follower = OnlineSolver(2, frozenset({0, 1}), frozenset({"a"}))
-    follower.step(1, frozenset({0}))
+    follower = OnlineSolver(2, Step(None, frozenset({0, 1}), frozenset({"a"})))
+    follower.step(Step(1, frozenset({0})))
     whole = follower.status(WATCH)
-    follower.step(0, frozenset({0, 1}), frozenset({"b"}))  # back where there was a sign a
+    follower.step(Step(0, frozenset({0, 1}), frozenset({"b"})))  # back where there was a sign a
     assert follower.status(WATCH).none_since == 2
-    follower.step(0, frozenset({0}))
+    follower.step(Step(0, frozenset({0})))
     status = follower.status(WATCH)
     assert (status.hypotheses, status.none_since, status.best) == (0, 2, ())
     follower.undo(2)
     assert follower.status(WATCH) == whole
-    follower.step(0, frozenset({0, 1}), frozenset({"a"}))
+    follower.step(Step(0, frozenset({0, 1}), frozenset({"a"})))
     assert follower.status(WATCH).hypotheses == 1
 
 

@@ -13,7 +13,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from topomap.model.experience import Experience
+from topomap.model.experience import Experience, Step
 from topomap.model.facts import read
 from topomap.model.query import Query
 from topomap.runtime.files import output
@@ -76,16 +76,16 @@ def measured(name: str, planar: bool, places: int | None, limit: float) -> Itera
     differ."""
     experience = read(ROOT / f"instances/{name}.lp")
     query = Query(frozenset(["planar"] if planar else ()), places)
-    start = experience.views[0], experience.landmarks[0]
     rules = 0
     follower = None
     for step in range(experience.steps + 1):
         begun = time.process_time()
         if follower:
             view, landmarks = experience.views[step], experience.landmarks[step]
-            follower.step(experience.turns[step - 1], view, landmarks)
+            follower.step(Step(experience.turns[step - 1], view, landmarks))
         else:
-            follower = OnlineSolver(experience.slots, *start, planar, places)
+            first = Step(None, experience.views[0], experience.landmarks[0])
+            follower = OnlineSolver(experience.slots, first, planar, places)
         status = follower.status(Watch())
         done = time.process_time()
         try:

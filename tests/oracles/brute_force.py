@@ -176,17 +176,17 @@ def contradicts(experience, at):
     for name, *rest in known:
         told.setdefault(name, []).append(rest)
     last = len(at) - 1
-    compass = {t: slot for t, slot in told.get("compass", [])}
+    compass = dict(told.get("compass", []))
     shift = {t: (x, y) for t, x, y in told.get("shift", [])}
-    length = {t: d for t, d in told.get("length", [])}
+    length = dict(told.get("length", []))
     (drift,), (stretch,) = told.get("drift", [[10]])[0], told.get("stretch", [[10]])[0]
     for t, u in combinations(range(last + 1), 2):
         if at[t][0] != at[u][0]:
             continue
-        if t in compass and u in compass:
-            # The compass slot of the place's gateway 0 is one, whichever visit tells it.
-            if (compass[t] - at[t][1]) % slots != (compass[u] - at[u][1]) % slots:
-                return True
+        # The compass slot of the place's gateway 0 is one, whichever visit tells it.
+        zeros = {(compass[v] - at[v][1]) % slots for v in (t, u) if v in compass}
+        if len(zeros) > 1:
+            return True
         between = range(t + 1, u + 1)
         if all(step in shift for step in between):
             moved = [sum(shift[step][axis] for step in between) for axis in (0, 1)]
@@ -228,9 +228,9 @@ def tree(experience, planar=False, bound=None):
 
             if x in before.link:
                 child = *at, before.link[x]
-                if fits(*before.link[x]) and marked(marker, child):
-                    if not (known and contradicts(experience, child)):
-                        level.append(child)
+                fitting = fits(*before.link[x]) and marked(marker, child)
+                if fitting and not (known and contradicts(experience, child)):
+                    level.append(child)
                 continue
             arrivals = [g for g in before.pending() if g != x and fits(*g)]
             if planar:

@@ -4,7 +4,7 @@ something that is easily got wrong, and random ones."""
 import random
 from dataclasses import replace
 
-from topomap.model.experience import MARKER, Experience, observe
+from topomap.model.experience import MARKER, Experience, Step, observe
 from topomap.model.topology import TopologicalMap
 from topomap.worlds.environment import grid, world
 
@@ -210,3 +210,18 @@ def marks(experience, step):
     """What was done with the marker after a step."""
     told = experience.drops, experience.picks, experience.markers
     return frozenset(name for name, steps in zip(MARKER, told, strict=True) if step in steps)
+
+
+def told(experience, step):
+    """What is told of a step."""
+    pairs = {
+        name: frozenset(one for one, other in getattr(experience, name) if other == step)
+        for name in ("same", "apart")
+    }
+    known = {"compass": experience.compass[step] if experience.compass else None}
+    if step:
+        known["shift"] = experience.shifts[step - 1] if experience.shifts else None
+        known["length"] = experience.lengths[step - 1] if experience.lengths else None
+    turn = experience.turns[step - 1] if step else None
+    seen = experience.views[step], experience.landmarks[step], marks(experience, step)
+    return Step(turn, *seen, **known, **pairs)

@@ -6,7 +6,7 @@ from typing import Any, Unpack
 
 from topomap.api.maps import Map
 from topomap.api.parts import OnlineParts, asked_of
-from topomap.model.experience import MOST_SLOTS
+from topomap.model.experience import DRIFT, MOST_SLOTS, STRETCH
 from topomap.model.found import Found
 from topomap.model.words import number
 from topomap.questions.explore import Plan
@@ -144,6 +144,11 @@ class Follower:
         drop: bool = False,
         pick: bool = False,
         marker: bool = False,
+        compass: int | None = None,
+        shift: tuple[int, int] | None = None,
+        length: int | None = None,
+        same: Iterable[int] = (),
+        apart: Iterable[int] = (),
         watch: Watch | None = None,
     ) -> FollowerStatus:
         """Go a step on.
@@ -155,6 +160,10 @@ class Follower:
                 of the one where it stood; None for the first view, where the exploration starts.
             landmarks: the landmarks that are seen, as terms of clingo, such as ``"a"``.
             drop, pick, marker: whether the marker is put down here, is taken up, is seen.
+            compass: the compass slot to which the gateway stood at points.
+            shift: how far this step moved the agent, as (x, y), in whole numbers of any unit.
+            length: how long this step was, in whole units.
+            same, apart: earlier steps after which the agent was at this place, or at another one.
             watch: that of a command; then the time limit is not used.
 
         Returns:
@@ -170,6 +179,14 @@ class Follower:
             "landmarks": list(collection("landmarks", landmarks)),
         }
         data |= {"drop": drop, "pick": pick, "marker": marker}
+        known = {"compass": compass, "length": length}
+        data |= {name: integer(name, one) for name, one in known.items() if one is not None}
+        lists = {"shift": shift or (), "same": same, "apart": apart}
+        data |= {
+            name: [integer(name, one) for one in given]
+            for name, of in lists.items()
+            if (given := [*collection(name, of)])
+        }
         data |= {} if turn is None else {"turn": integer("turn", turn)}
         for _ in self.take(self.record.with_object(data)):
             pass
@@ -201,6 +218,8 @@ def follow(
     marker: bool = False,
     count_limit: int = MOST_COUNTED,
     timeout: float | None = None,
+    drift: int = DRIFT,
+    stretch: int = STRETCH,
     **parts: Unpack[OnlineParts],
 ) -> Follower:
     """Follow an exploration as it happens (the hypotheses and the best maps are those of the
@@ -212,6 +231,7 @@ def follow(
         marker: whether the agent carries a marker, for what to do next.
         count_limit: of more hypotheses it is only told that they are more.
         timeout: seconds that the answer to a step may take.
+        drift, stretch: how far shifts and lengths may be wrong, in percent.
         parts: what the maps are to have: ``planar``.
 
     Returns:
@@ -224,6 +244,8 @@ def follow(
     planar = "planar" in asked_of(parts, OnlineParts.__annotations__)
     bound, count_limit = whole_if_given("bound", bound, 1), whole("count_limit", count_limit, 1)
     following = Following(planar, bound, flag("marker", marker), count_limit)
+    measured = whole("drift", drift, 0), whole("stretch", stretch, 0)
+    following.record = Record(drift=measured[0], stretch=measured[1])
     if slots is not None:
-        following.record = Record().with_slots(whole("slots", slots, 2, MOST_SLOTS))
+        following.record = following.record.with_slots(whole("slots", slots, 2, MOST_SLOTS))
     return Follower(following, seconds("timeout", timeout))

@@ -16,7 +16,10 @@ from topomap.runtime.folders import ENCODINGS
 At = Sequence[tuple[int, int, int]]  # at(T,P,S)
 Violation = tuple[str, int]
 PATH_RULES = {"path_twice", "path_circular"}
-STEP_RULES = {"exactly_one", "naming", "gateway", "view", "landmark", "marker", "schema"}
+STEP_RULES = {
+    *("exactly_one", "naming", "gateway", "view", "landmark", "marker", "schema"),
+    *("compass", "odometry", "length", "same", "apart"),
+}
 
 
 def by_rules(experience: Experience, at: At, demands: Sequence[str] = ()) -> set[Violation]:
@@ -24,7 +27,7 @@ def by_rules(experience: Experience, at: At, demands: Sequence[str] = ()) -> set
 
     ``demands`` are terms: planar, bound(B), closed, travelled, boundary, perpendicular.
     """
-    control = clingo.Control()
+    control = clingo.Control(experience.constants())
     control.load(str(ENCODINGS / "check.lp"))
     facts = [f"at({step},{place},{slot})." for step, place, slot in at]
     facts += [f"demand({demand})." for demand in demands]
@@ -64,6 +67,7 @@ def by_definition(experience: Experience, at: At, demands: Sequence[str] = ()) -
                 spotted = step in experience.markers | experience.picks
                 if spotted != (stands[step][0] == stands[drop][0]):
                     found.add(("marker", step))
+    found |= _contradictions(experience, stands)
     ends: dict[Gateway, set[Gateway]] = {}
     for step, out, arrival in _ways(experience, stands):
         ends.setdefault(out, set()).add(arrival)
@@ -81,6 +85,39 @@ def by_definition(experience: Experience, at: At, demands: Sequence[str] = ()) -
         while not broken(Grown(experience, stands, step), limit):
             step += 1
         found.add((rule, step))
+    return found
+
+
+def _contradictions(experience: Experience, stands: dict[int, Gateway]) -> set[Violation]:
+    """What contradicts what is known besides views, of each two steps."""
+    found = set()
+    for one, other in combinations(sorted(stands), 2):
+        if stands[one][0] != stands[other][0]:
+            continue
+        turned = stands[other][1] - stands[one][1]
+        slots = experience.compass[one : other + 1 : other - one]
+        north = [slot for slot in slots if slot is not None]
+        if len(north) == 2 and (north[1] - north[0] - turned) % experience.slots:
+            found.add(("compass", other))
+        moved = [shift for shift in experience.shifts[one:other] if shift]
+        if len(moved) == other - one:
+            way = sum(abs(x) + abs(y) for x, y in moved)
+            apart = max(abs(sum(shift[axis] for shift in moved)) for axis in (0, 1))
+            if 100 * apart > experience.drift * way:
+                found.add(("odometry", other))
+    for rule, pairs in (("same", experience.same), ("apart", experience.apart)):
+        for one, other in pairs:
+            if not {one, other} <= stands.keys():
+                continue
+            if (stands[one][0] == stands[other][0]) != (rule == "same"):
+                found.add((rule, other))
+    links = {step: {out, arrival} for step, out, arrival in _ways(experience, stands)}
+    lengths = [(step, length) for step, length in enumerate(experience.lengths, 1) if length]
+    for (one, length), (other, another) in combinations(lengths, 2):
+        if not {one, other} <= links.keys() or links[one] != links[other]:
+            continue
+        if 100 * abs(length - another) > experience.stretch * max(length, another):
+            found.add(("length", other))
     return found
 
 

@@ -6,7 +6,7 @@ from typing import TypeVar
 
 from topomap.model.terms import spelt
 from topomap.model.topology import Gateway, Place, TopologicalMap
-from topomap.runtime.checks import collection, integer, shown, whole
+from topomap.runtime.checks import collection, integer, shown, whole, whole_if_given
 from topomap.runtime.limits import LARGEST
 
 DState = tuple[int, int]
@@ -16,6 +16,26 @@ MARKER = ("drop", "pick", "marker")
 DRIFT, STRETCH = 10, 10  # percent, as encodings/theory/ has them
 Shift = tuple[int, int]  # how far a step moved the agent, in one fixed frame
 Visits = tuple[int, int]  # two visits, each named by its step, the earlier one first
+
+
+@dataclass(frozen=True)
+class Step:
+    """What is told of one step; while it is being told, not all is known as yet.
+
+    ``turn`` is None of step 0, where the exploration begins. ``marks`` are those of MARKER that
+    hold after it; ``same`` and ``apart`` the earlier steps after which the agent was at this place,
+    or at another one. The rest is as in ``Experience``.
+    """
+
+    turn: int | None = None
+    view: frozenset[int] = frozenset()
+    landmarks: frozenset[str] = frozenset()
+    marks: frozenset[str] = frozenset()
+    compass: int | None = None
+    shift: Shift | None = None
+    length: int | None = None
+    same: frozenset[int] = frozenset()
+    apart: frozenset[int] = frozenset()
 
 
 @dataclass(frozen=True, init=False)
@@ -115,10 +135,7 @@ class Experience:
         north = _each("compass", compass, many, integer)
         moved = _each("shifts", shifts, many - 1, _shift)
         measured = _each("lengths", lengths, many - 1, integer)
-        pairs = [
-            frozenset(_visits(name, pair, len(done)) for pair in collection(name, of))
-            for name, of in (("same", same), ("apart", apart))
-        ]
+        pairs = [_pairs(name, of, len(done)) for name, of in (("same", same), ("apart", apart))]
         percents = whole("drift", drift, 0, LARGEST), whole("stretch", stretch, 0, LARGEST)
         values = (
             *(integer("slots", slots), seen, done, signs, *marks),
@@ -157,23 +174,46 @@ class Experience:
     def within(self, drift: int | None = None, stretch: int | None = None) -> "Experience":
         """The same experience, where shifts may be wrong by ``drift`` percent and lengths by
         ``stretch`` percent (None: as before)."""
-        changed = {"drift": drift, "stretch": stretch}
-        return self._but(
-            **{key: whole(key, value, 0, LARGEST) for key, value in changed.items() if value is not None}
-        )
+        changed = {
+            "drift": whole_if_given("drift", drift, 0),
+            "stretch": whole_if_given("stretch", stretch, 0),
+        }
+        return self._but(**{key: value for key, value in changed.items() if value is not None})
 
     def knowing(self, same: Iterable[Visits] = (), apart: Iterable[Visits] = ()) -> "Experience":
         """The same experience, where more pairs of visits are known to be of one place, or of
         two."""
-        more = [{_visits(name, pair, self.steps) for pair in of} for name, of in
-                (("same", same), ("apart", apart))]
-        return self._but(same=self.same | more[0], apart=self.apart | more[1])
+        return self._but(
+            same=self.same | _pairs("same", same, self.steps),
+            apart=self.apart | _pairs("apart", apart, self.steps),
+        )
 
     def constants(self) -> list[str]:
         """The options of clingo that tell how far shifts and lengths may be wrong."""
         told = [f"drift={self.drift}"] * bool(self.shifts)
         told += [f"stretch={self.stretch}"] * bool(self.lengths)
         return [option for one in told for option in ("-c", one)]
+
+    def then(self, step: Step) -> "Experience":
+        """The experience with one more step, of which the caller has seen to it that it can be."""
+        last = self.steps + 1
+        drops, picks, markers = (
+            steps | {last} if name in step.marks else steps
+            for name, steps in zip(MARKER, (self.drops, self.picks, self.markers), strict=True)
+        )
+        return self._but(
+            views=(*self.views, step.view),
+            turns=(*self.turns, step.turn),
+            landmarks=(*self.landmarks, step.landmarks),
+            drops=drops,
+            picks=picks,
+            markers=markers,
+            compass=_longer(self.compass, last, step.compass),
+            shifts=_longer(self.shifts, last - 1, step.shift),
+            lengths=_longer(self.lengths, last - 1, step.length),
+            same=self.same | {(earlier, last) for earlier in step.same},
+            apart=self.apart | {(earlier, last) for earlier in step.apart},
+        )
 
     def _but(self, **changed: object) -> "Experience":
         """The same experience but for what is changed, which is known to be plain: it is not
@@ -215,32 +255,34 @@ class Experience:
 
     def facts(self) -> str:
         """The experience as facts, one line a step."""
-        lines = [f"slots({self.slots})."]
-        pairs: dict[int, list[str]] = {}  # by the later step
+        pairs: dict[int, list[tuple[str, int]]] = {}
         for name in ("same", "apart"):
             for one, other in sorted(getattr(self, name)):
-                pairs.setdefault(other, []).append(f"{name}({one},{other}).")
-        for step, (view, landmarks) in enumerate(zip(self.views, self.landmarks, strict=True)):
-            line = [f"turn({step},{self.turns[step - 1]})."] if step else []
-            line += [f"view({step},{slot})." for slot in sorted(view)]
-            line += [f"landmark({step},{term})." for term in sorted(landmarks)]
-            line += [f"marker({step})."] * (step in self.markers)
-            line += [f"pick({step})."] * (step in self.picks)
-            line += [f"drop({step})."] * (step in self.drops)
-            line += self._known(step, pairs.get(step, ()))
+                pairs.setdefault(other, []).append((name, one))
+        lines = [f"slots({self.slots})."]
+        for step in range(self.steps + 1):
+            line = self.facts_of(step)
+            line += [f"{name}({one},{step})." for name, one in pairs.get(step, ())]
             lines.append(" ".join(line))
         return "\n".join(lines) + "\n"
 
-    def _known(self, step: int, pairs: Iterable[str]) -> list[str]:
-        """The facts that tell of a step what is known besides views."""
-        told = [*pairs]
+    def facts_of(self, step: int, number: int | None = None) -> list[str]:
+        """The facts that are told of a step, but for pairs of steps; in these it has this number,
+        if one is given."""
+        named = step if number is None else number
+        line = [f"turn({named},{self.turns[step - 1]})."] if step else []
+        line += [f"view({named},{slot})." for slot in sorted(self.views[step])]
+        line += [f"landmark({named},{term})." for term in sorted(self.landmarks[step])]
+        line += [f"marker({named})."] * (step in self.markers)
+        line += [f"pick({named})."] * (step in self.picks)
+        line += [f"drop({named})."] * (step in self.drops)
         if self.compass and (slot := self.compass[step]) is not None:
-            told.append(f"compass({step},{slot}).")
+            line.append(f"compass({named},{slot}).")
         if step and self.shifts and (shift := self.shifts[step - 1]) is not None:
-            told.append(f"shift({step},{shift[0]},{shift[1]}).")
+            line.append(f"shift({named},{shift[0]},{shift[1]}).")
         if step and self.lengths and (length := self.lengths[step - 1]) is not None:
-            told.append(f"length({step},{length}).")
-        return told
+            line.append(f"length({named},{length}).")
+        return line
 
     def map_of(self, at: tuple[DState, ...]) -> TopologicalMap:
         """The map of a hypothesis, given the dstate after each step (``at/3``)."""
@@ -261,6 +303,13 @@ def _told(values: tuple[T | None, ...]) -> tuple[T | None, ...]:
     return values if any(value is not None for value in values) else ()
 
 
+def _longer(values: tuple[T | None, ...], many: int, more: T | None) -> tuple[T | None, ...]:
+    """So many values, which are empty if none is told, and one more."""
+    if not values and more is None:
+        return ()
+    return (*(values or (None,) * many), more)
+
+
 def _each(
     name: str, given: Iterable[T | None], many: int, plain: Callable[[str, T], T]
 ) -> tuple[T | None, ...]:
@@ -277,6 +326,15 @@ def _each(
 def _shift(name: str, given: Shift) -> Shift:
     x, y = _two(name, given, "(x, y)")
     return integer(name, x), integer(name, y)
+
+
+def _pairs(name: str, given: Iterable[Visits], last: int) -> frozenset[Visits]:
+    """Pairs of visits, but for what says that a visit is of its own place."""
+    pairs = {_visits(name, pair, last) for pair in collection(name, given)}
+    alone = {pair for pair in pairs if pair[0] == pair[1]}
+    if alone and name == "apart":
+        raise ValueError(f"apart: {min(alone)}: a visit is of one place with itself")
+    return frozenset(pairs - alone)
 
 
 def _visits(name: str, given: Visits, last: int) -> Visits:

@@ -8,14 +8,14 @@ An instance file is data: ground facts ``slots/1``, ``view/2``, ``turn/2``, ``la
 import difflib
 import itertools
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 import clingo
 
-from topomap.model.experience import MARKER, MOST_SLOTS, Experience, marker_fault, marker_out
+from topomap.model.experience import MARKER, MOST_SLOTS, Experience, Shift, marker_fault, marker_out
 from topomap.model.terms import STRING, cut_short, ground, quoted
 from topomap.runtime import files
 from topomap.runtime.errors import InputError
@@ -59,8 +59,8 @@ def parse(
     for fault in facts.faults(text, noisy):
         raise InputError(fault.of(source))
     experience = facts.experience().within(drift, stretch)
-    if fault := range_fault(experience):
-        raise InputError(fault.of(source))
+    if too_large := unmeasured(experience):
+        raise InputError(too_large.of(source))
     return experience
 
 
@@ -232,8 +232,8 @@ class Facts:
         for (length,), line in self.known["length"].get(step, {}).items():
             if length <= 0:
                 yield Fault(f"length {length} is not above 0", line, step)
-        if line := self.pairs["apart"].get((step, step)):
-            yield Fault("it is told to be of another place than itself", line, step)
+        if told_apart := self.pairs["apart"].get((step, step)):
+            yield Fault("it is told to be of another place than itself", told_apart, step)
 
     def experience(self) -> Experience:
         """The experience that the facts make, if they have no fault."""
@@ -248,26 +248,36 @@ class Facts:
             compass=self._each("compass", steps),
             shifts=self._each("shift", steps[1:]),
             lengths=self._each("length", steps[1:]),
-            **{name: self.pairs[name] for name in PAIRS},
+            same=self.pairs["same"],
+            apart=self.pairs["apart"],
         )
 
     def _each(self, name: str, steps: range) -> list[Any]:
         """What is told of each step, or None: a number, or if there are several, all of them."""
         told = (next(iter(self.known[name].get(step, ())), None) for step in steps)
-        return [one[0] if one and len(one) == 1 else one for one in told] if self.known[name] else []
+        return (
+            [one[0] if one and len(one) == 1 else one for one in told] if self.known[name] else []
+        )
 
 
-def range_fault(experience: Experience) -> Fault | None:
+def unmeasured(seen: Experience) -> Fault | None:
+    """Which step's shift or length clingo's numbers do not hold, if there is one."""
+    return range_fault(seen.shifts, seen.lengths, seen.drift, seen.stretch)
+
+
+def range_fault(
+    shifts: Iterable[Shift | None], lengths: Iterable[int | None], drift: int, stretch: int
+) -> Fault | None:
     """Which step's shift or length leaves what clingo's numbers hold, when it is multiplied by 100
     or by the percent that it may be wrong by; those of shifts are summed."""
-    far, most = 0, LARGEST // max(100, experience.drift)
-    for step, shift in enumerate(experience.shifts, 1):
+    far, most = 0, LARGEST // max(100, drift)
+    for step, shift in enumerate(shifts, 1):
         far += abs(shift[0]) + abs(shift[1]) if shift else 0
         if far > most:
             said = f"the shifts up to here come to {far}; with this drift they may come to {most}"
             return Fault(said, step=step)
-    most = LARGEST // max(100, experience.stretch)
-    for step, length in enumerate(experience.lengths, 1):
+    most = LARGEST // max(100, stretch)
+    for step, length in enumerate(lengths, 1):
         if length is not None and length > most:
             return Fault(f"length {length} is above {most}, the most with this stretch", step=step)
     return None

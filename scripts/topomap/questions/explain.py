@@ -22,10 +22,12 @@ from topomap.model.query import Query
 from topomap.model.vocabulary import DEMANDS
 from topomap.questions.cores import dstates, find_reasons, kind_of, numbers_of, verify
 from topomap.questions.reasons import (
+    KNOWN,
     RULES,
     Broken,
     Told,
     told_gateway,
+    told_known,
     told_marker,
     told_plainly,
     told_views,
@@ -322,6 +324,8 @@ def _plainly(experience: Experience, name: str) -> Told:
         return told_views(experience, numbers)
     if kind == "marker":
         return told_marker(experience, numbers[0])
+    if kind in KNOWN:
+        return told_known(experience, kind, numbers)
     if kind in ("closed", "travelled"):
         return told_gateway(kind, *numbers)
     return told_plainly(kind, numbers)

@@ -6,10 +6,10 @@ from typing import Any
 
 from topomap.documents.answers import map_line
 from topomap.model import words
-from topomap.model.experience import Experience
+from topomap.model.experience import Experience, Step
 from topomap.model.found import Found, steps_json
 from topomap.questions.explore import LIMITS, Plan, plan
-from topomap.questions.records import Record, Step
+from topomap.questions.records import Record
 from topomap.questions.standings import standing
 from topomap.runtime.limits import MOST_COUNTED
 from topomap.runtime.watch import Watch
@@ -137,19 +137,12 @@ class Following:
 
     def _go(self, step: Step) -> None:
         if self.solver is None:
-            assert self.record.slots is not None
-            self.solver = OnlineSolver(
-                self.record.slots,
-                step.view,
-                step.landmarks,
-                self.planar,
-                self.bound,
-                self.most,
-                step.marks,
-            )
+            record = self.record
+            assert record.slots is not None
+            limits = self.planar, self.bound, self.most
+            self.solver = OnlineSolver(record.slots, step, *limits, record.drift, record.stretch)
         else:
-            assert step.turn is not None
-            self.solver.step(step.turn, step.view, step.landmarks, step.marks)
+            self.solver.step(step)
 
     def answer(self, watch: Watch) -> StepAnswer:
         """What is known where it stands, after one step at least; at the time limit, what is known

@@ -7,6 +7,7 @@ by the visits, as the rules in ``encodings/theory/`` do, and not by the links.
 from collections import deque
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from fractions import Fraction
 from functools import cached_property
 
 from topomap.model.experience import DState, Experience
@@ -17,6 +18,11 @@ from topomap.runtime.errors import printable
 RULES = {
     "view": "views",
     "marker": "marker",
+    "compass": "compass",
+    "odometry": "odometry",
+    "length": "lengths",
+    "same": "known closures",
+    "apart": "known closures",
     "unification": "gateway unification",
     "schema": "schema",
     "twice": "path axiom",
@@ -33,6 +39,7 @@ RULES = {
     "closed": "closed",
 }
 RULE_NAMES = tuple(RULES)  # those named first are what an explanation prefers to be made of
+KNOWN = ("compass", "odometry", "length", "same", "apart")  # what is known besides views
 FIRST = RULE_NAMES.index("bound")  # so many are of every map, and not of demands
 Node = tuple[int, int]  # a run, and a visit on it
 
@@ -182,6 +189,8 @@ class Broken:
             return self._links(kind, *arguments)
         if kind in ("twice", "crossed", "circular"):
             return self._path(kind, arguments)
+        if kind in KNOWN:
+            return told_known(self.experience, kind, arguments, self.at)
         if kind == "planar":
             steps, places = self.cycle(arguments[0])
             words = (
@@ -313,6 +322,54 @@ def told_views(
         f"{fault}"
     )
     return Told(words, (step, visit))
+
+
+def told_known(
+    experience: Experience, kind: str, steps: Sequence[int], at: Sequence[DState] | None = None
+) -> Told:
+    """What is known besides views, of two steps."""
+    one, other = steps
+    if kind == "compass":
+        slots = [experience.compass[step] for step in steps]
+        words = (
+            f"the gateway stood at points to compass slot {slots[0]} after step {one}, and to "
+            f"{slots[1]} after step {other}"
+        )
+        if at is not None:
+            turn = (at[other][1] - at[one][1]) % experience.slots
+            words += f"; from the one to the other the agent would turn by {turn}"
+    elif kind == "odometry":
+        words = _far(experience, one, other)
+    elif kind == "length":
+        lengths = [experience.lengths[step - 1] for step in steps]
+        words = (
+            f"steps {one} and {other} would go by one link, and are {lengths[0]} and {lengths[1]} "
+            f"long; on one link lengths differ by {experience.stretch} % at most"
+        )
+    else:
+        places = "one place" if kind == "same" else "two places"
+        words = f"the agent is known to have been at {places} after steps {one} and {other}"
+        if at is not None:
+            there = sorted({at[step][0] for step in steps})
+            words += f"; it would have been at {_named('place', there)}"
+    return Told(words, (one, other))
+
+
+def _far(experience: Experience, one: int, other: int) -> str:
+    """How far apart two visits are by odometry."""
+    moved = [shift for shift in experience.shifts[one:other] if shift]
+    apart = max(abs(sum(shift[axis] for shift in moved)) for axis in (0, 1))
+    way = sum(abs(x) + abs(y) for x, y in moved)
+    wrong = Fraction(experience.drift * way, 100)
+    return (
+        f"step {other} is at least {_decimal(apart - wrong)} units from step {one} by its odometry: "
+        f"{apart} were measured, on a way of {way}, which may be wrong by {experience.drift} %"
+    )
+
+
+def _decimal(number: Fraction) -> str:
+    """A number of whole hundredths."""
+    return f"{float(number):.2f}".rstrip("0").rstrip(".")
 
 
 def told_marker(experience: Experience, step: int, at: Sequence[DState] | None = None) -> Told:

@@ -13,12 +13,19 @@ import clingo
 
 from topomap.documents.maps import is_number
 from topomap.model import words
-from topomap.model.experience import MARKER, marker_fault, marker_out
-from topomap.model.facts import SIGNATURES, ground_facts, misfit, slots_fault
+from topomap.model.experience import DRIFT, MARKER, STRETCH, Step, marker_fault, marker_out
+from topomap.model.facts import PAIRS, SIGNATURES, ground_facts, misfit, range_fault, slots_fault
 from topomap.model.terms import cut_short
 from topomap.runtime.errors import InputError
 
 KNOWN = {**SIGNATURES, "undo": "undo(N)"}  # of which undo is a line by itself
+KNOWN_KEYS = {  # of a step in JSON, with what each wants
+    "compass": "a slot",
+    "shift": "a list of two whole numbers",
+    "length": "a whole number",
+    "same": "a list of steps",
+    "apart": "a list of steps",
+}
 _UNDO = re.compile(r"undo(?:\(\s*([0-9]{1,9})\s*\))?\s*\.\s*(?:%.*)?", re.ASCII | re.DOTALL)
 
 
@@ -27,21 +34,13 @@ class LineFault(ValueError):
 
 
 @dataclass(frozen=True)
-class Step:
-    """What is known of a step, which may not be all as yet."""
-
-    turn: int | None = None
-    view: frozenset[int] = frozenset()
-    landmarks: frozenset[str] = frozenset()
-    marks: frozenset[str] = frozenset()  # of MARKER
-
-
-@dataclass(frozen=True)
 class Record:
     """What was read. Of the last step something may be missing."""
 
     slots: int | None = None
     steps: tuple[Step, ...] = ()
+    drift: int = DRIFT
+    stretch: int = STRETCH
 
     def lack(self) -> str | None:
         """What the last step lacks."""
@@ -75,7 +74,7 @@ class Record:
                 if isinstance(fact, str):
                     raise LineFault(fact)
                 record = record._with(fact)
-            return record._marked()
+            return record._marked()._measured()
         except LineFault as fault:
             raise InputError(f"{source}:{number}: {fault}") from None
 
@@ -94,6 +93,13 @@ class Record:
             return self._seen(first, turn=arguments[1].number)
         if name in MARKER:
             return self._seen(first, mark=name)
+        numbers = tuple(argument.number for argument in arguments[1:] if name != "landmark")
+        if name in PAIRS:
+            return self._paired(name, first, *numbers)
+        if name in ("compass", "length"):
+            return self._known(first, name, *numbers)
+        if name == "shift":
+            return self._known(first, name, numbers)
         return self._seen(first, landmark=str(arguments[1]))
 
     def _marked(self) -> "Record":
@@ -115,6 +121,43 @@ class Record:
         if self.steps:
             raise LineFault("slots are to be told before the first step")
         return replace(self, slots=slots)
+
+    def _known(self, step: int, name: str, value: Any) -> "Record":
+        """The record with what is known besides views of the last step, or of the next one."""
+        record = self._seen(step)
+        assert record.slots is not None
+        known = record.steps[step]
+        if getattr(known, name) not in (None, value):
+            raise LineFault(f"step {step}: more than one {name}")
+        if name == "compass" and not 0 <= value < record.slots:
+            raise LineFault(f"step {step}: compass slot {value} is not in 0..{record.slots - 1}")
+        if name != "compass" and step == 0:
+            raise LineFault(f"step 0: there is a {name}, but step 1 is the first that moves")
+        if name == "length" and value <= 0:
+            raise LineFault(f"step {step}: length {value} is not above 0")
+        changed: dict[str, Any] = {name: value}
+        return replace(record, steps=(*record.steps[:step], replace(known, **changed)))
+
+    def _paired(self, name: str, one: int, other: int) -> "Record":
+        """The record with two steps after which the agent was at one place, or at two."""
+        earlier, step = sorted((one, other))
+        if earlier < 0:
+            raise LineFault(f"step {earlier}: steps are numbered from 0")
+        record = self._seen(step)
+        if earlier == step and name == "apart":
+            raise LineFault(f"step {step}: it is told to be of another place than itself")
+        known = record.steps[step]
+        changed: dict[str, Any] = {name: getattr(known, name) | {earlier}}
+        return replace(record, steps=(*record.steps[:step], replace(known, **changed)))
+
+    def _measured(self) -> "Record":
+        """The record, if clingo's numbers hold what comes of its shifts and lengths."""
+        if any(step.shift or step.length for step in self.steps[-1:]):
+            told = self.steps[1:]
+            shifts, lengths = [step.shift for step in told], [step.length for step in told]
+            if fault := range_fault(shifts, lengths, self.drift, self.stretch):
+                raise LineFault(fault.of("").lstrip(": "))
+        return self
 
     def _seen(
         self,
@@ -165,7 +208,7 @@ class Record:
         """The record with what a JSON object says: a step, whole, or how many to take back.
         Raises LineFault."""
         begins = self.slots is None
-        known = {"slots" if begins else "turn", "view", "landmarks", *MARKER}
+        known = {"slots" if begins else "turn", "view", "landmarks", *MARKER, *KNOWN_KEYS}
         if data.keys() == {"undo"}:
             if not is_number(data["undo"]):
                 raise LineFault("undo: a whole number is wanted")
@@ -212,9 +255,27 @@ class Record:
         for name in MARKER:
             if data.get(name):
                 record = record._seen(step, mark=name)
+        for name in KNOWN_KEYS:
+            value = data.get(name)
+            if value is not None and not _fits(name, value):
+                raise LineFault(f"{name}: {KNOWN_KEYS[name]} is wanted")
+            for other in value or () if name in PAIRS else ():
+                record = record._paired(name, other, step)
+            if value is not None and name not in PAIRS:
+                record = record._known(step, name, tuple(value) if name == "shift" else value)
         if lack := record.lack():
             raise LineFault(lack)
-        return record._marked()
+        return record._marked()._measured()
+
+
+def _fits(name: str, value: Any) -> bool:
+    """Whether a value of a JSON object is what such a key wants."""
+    if name in ("compass", "length"):
+        return is_number(value)
+    whole = isinstance(value, list) and all(
+        isinstance(one, int) and not isinstance(one, bool) for one in value
+    )
+    return whole and (name != "shift" or len(value) == 2)
 
 
 def _parsed(text: str) -> dict[str, Any]:

@@ -1,5 +1,5 @@
-"""What is known besides views, asked of two visits, or of two steps: compass, odometry, lengths, and
-visits that are known to be of one place or of two.
+"""What is known besides views, asked of two visits, or of two steps: compass, odometry, lengths,
+and visits that are known to be of one place or of two.
 
 Written from the definitions (semantics: "Beyond the paper"), not from the encodings.
 """

@@ -168,8 +168,9 @@ class Future:
         The same is seen at both visits of such a pair, and they are not on one straight run of
         steps (the path axiom). What follows from the pair must be possible, too: if both visits
         leave by one gateway, or arrived by one, or if one leaves by the gateway by which the other
-        arrived, then the visits at the other ends of these links are of one place, and the two steps
-        along the link are of like length. And the pair agrees with compass and odometry."""
+        arrived, then the visits at the other ends of these links are of one place, and the two
+        steps along the link are of like length. And the pair agrees with compass and odometry."""
+        told = self.evidence
         by_kind: dict[int, list[int]] = defaultdict(list)
         for gateway, kind in self.kinds.items():
             by_kind[kind].append(gateway)
@@ -187,14 +188,15 @@ class Future:
         for visit, gateways in enumerate(looks):
             for gateway in gateways:
                 before, slot = divmod(gateway, slots)
-                if before < visit and not of[before] & of[visit]:
-                    if not (self.evidence and self.evidence.refuses(before, visit, slot)):
-                        pairs.add((before, visit, slot))
+                if before >= visit or of[before] & of[visit]:
+                    continue
+                if not (told and told.refuses(before, visit, slot)):
+                    pairs.add((before, visit, slot))
         asked_by: dict[Pair, list[Pair]] = defaultdict(list)
         wrong = []
         for pair in pairs:
             for (one, other, apart), steps in self._following(*pair):
-                if self.evidence.lengths and self.evidence.unequal(*steps):
+                if told.lengths and told.unequal(*steps):
                     wrong.append(pair)
                     break
                 if one == other:
@@ -216,9 +218,7 @@ class Future:
                 wrong += asked_by[pair]
         return pairs
 
-    def _following(
-        self, one: int, other: int, apart: int
-    ) -> list[tuple[Pair, tuple[int, int]]]:
+    def _following(self, one: int, other: int, apart: int) -> list[tuple[Pair, tuple[int, int]]]:
         """What follows if two visits are of one place: more such visits, in any order, each with
         the two steps along one link of which it follows."""
         turns, slots, last = self.turns, self.slots, self.experience.steps

@@ -17,8 +17,8 @@ from topomap.search.evidence import Evidence
 OFTEN = 500  # nodes between two looks at the clock
 Face = tuple[int, ...]
 # What refuses an arrival: another view is seen there, or other landmarks; the marker is seen and
-# does not lie there, or lies there and is not seen; what is known besides views; a place would be on
-# a path twice, or the path circular; and what was asked for.
+# does not lie there, or lies there and is not seen; what is known besides views; a place would be
+# on a path twice, or the path circular; and what was asked for.
 RULES = (
     *("view", "landmark", "marker", *KNOWN),
     *("twice", "circular", "planarity", "perpendicular", "bound"),

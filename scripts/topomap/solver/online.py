@@ -13,7 +13,7 @@ from typing import Any
 
 import clingo
 
-from topomap.model.experience import MARKER, DState, Experience
+from topomap.model.experience import DRIFT, MARKER, STRETCH, DState, Experience, Step
 from topomap.model.query import Query
 from topomap.runtime.folders import ENCODINGS
 from topomap.runtime.limits import MOST_COUNTED
@@ -67,18 +67,30 @@ class OnlineSolver:
     def __init__(
         self,
         slots: int,
-        view: frozenset[int],
-        landmarks: frozenset[str] = frozenset(),
+        first: Step,
         planar: bool = False,
         bound: int | None = None,
         most: int = MOST_COUNTED,
-        marks: frozenset[str] = frozenset(),
+        drift: int = DRIFT,
+        stretch: int = STRETCH,
     ):
-        self.experience = Experience(slots, (view,), (), (landmarks,), *_marked(marks, 0))
+        """Begin where the first view was seen; ``drift`` and ``stretch`` tell, in percent, how far
+        shifts and lengths may be wrong."""
+        marked = ([0] * (name in first.marks) for name in MARKER)
+        self.experience = Experience(
+            slots,
+            (first.view,),
+            (),
+            (first.landmarks,),
+            *marked,
+            compass=[first.compass],
+            drift=drift,
+            stretch=stretch,
+        )
         self.most = most
         self._query = Query(frozenset(["planar"] if planar else ()), bound)
         self._parts = ["step", *(["planar"] if planar else [])]
-        arguments = ["0", "--project"]
+        arguments = ["0", "--project", "-c", f"drift={drift}", "-c", f"stretch={stretch}"]
         if bound is not None:
             self._parts.append("bound")
             arguments += ["-c", f"places={bound}"]
@@ -93,43 +105,30 @@ class OnlineSolver:
         self._level: list[tuple[int, ...]] = [(0,)]  # the hypotheses after some step
         self._wide = False  # a later step has too many of them
         self._none: int | None = None
-        self._ground(("base", []))
+        self._ground([], ("base", []))
 
     @property
     def rules(self) -> int:
         """The ground rules so far."""
         return int(self._control.statistics["problem"]["lp"]["rules"])
 
-    def step(
-        self,
-        turn: int,
-        view: frozenset[int],
-        landmarks: frozenset[str] = frozenset(),
-        marks: frozenset[str] = frozenset(),
-    ) -> None:
-        """Go a step on; ``marks`` tells which of drop, pick and marker hold after it. The caller
-        has seen to it that the turn leads to a gateway, and the marker is not out twice."""
-        seen = self.experience
-        known = seen.drops, seen.picks, seen.markers
-        now = _marked(marks, seen.steps + 1)
-        self.experience = Experience(
-            seen.slots,
-            (*seen.views, view),
-            (*seen.turns, turn),
-            (*seen.landmarks, landmarks),
-            *(steps | more for steps, more in zip(known, now, strict=True)),
-        )
-        self._ground()
+    def step(self, step: Step) -> None:
+        """Go a step on. The caller has seen to it that the turn leads to a gateway, and the marker
+        is not out twice."""
+        self.experience = self.experience.then(step)
+        pairs = {"same": step.same, "apart": step.apart}
+        told = [
+            f"{name}({self.visits[earlier]},{self._numbered})."
+            for name, steps in pairs.items()
+            for earlier in steps
+            if earlier < self.experience.steps
+        ]
+        self._ground(told)
 
-    def _ground(self, *parts: tuple[str, list[clingo.Symbol]]) -> None:
-        visit, seen = self._numbered, self.experience
-        step = seen.steps
-        facts = [f"view({visit},{slot})." for slot in sorted(seen.views[step])]
-        facts += [f"landmark({visit},{term})." for term in sorted(seen.landmarks[step])]
-        marked = zip(MARKER, (seen.drops, seen.picks, seen.markers), strict=True)
-        facts += [f"{name}({visit})." for name, steps in marked if step in steps]
+    def _ground(self, told: Sequence[str], *parts: tuple[str, list[clingo.Symbol]]) -> None:
+        visit, step = self._numbered, self.experience.steps
+        facts = [*self.experience.facts_of(step, visit), *told]
         if step:
-            facts.append(f"turn({visit},{seen.turns[-1]}).")
             facts.append(f"after({visit},{self.visits[-1]}).")
         self._control.add(f"facts{visit}", [], " ".join(facts))
         mine = [(part, [clingo.Number(visit)]) for part in self._parts]
@@ -312,11 +311,6 @@ class OnlineSolver:
 
 def _atom(name: str, *numbers: int) -> clingo.Symbol:
     return clingo.Function(name, [clingo.Number(number) for number in numbers])
-
-
-def _marked(marks: frozenset[str], step: int) -> list[frozenset[int]]:
-    """The step, if the marker is put down after it, is taken up, is seen."""
-    return [frozenset([step] if name in marks else []) for name in MARKER]
 
 
 def _go(node: Hypothesis, before: tuple[int, ...], at: tuple[int, ...]) -> None:
