@@ -18,6 +18,7 @@ from topomap.runtime.version import VERSION as __version__
 if TYPE_CHECKING:
     from topomap.api.answer import Answer
     from topomap.api.ask import ask
+    from topomap.api.assume import assume
     from topomap.api.check import check
     from topomap.api.count import count
     from topomap.api.explain import explain
@@ -38,6 +39,7 @@ _WHERE = {
     "InputError": "runtime.errors",
     "Map": "api.maps",
     "ask": "api.ask",
+    "assume": "api.assume",
     "check": "api.check",
     "count": "api.count",
     "explain": "api.explain",
@@ -56,6 +58,7 @@ __all__ = [
     "Map",
     "__version__",
     "ask",
+    "assume",
     "check",
     "count",
     "explain",

@@ -6,14 +6,14 @@ from typing import Any, Unpack
 
 from topomap.api.maps import Map
 from topomap.api.parts import OnlineParts, asked_of
-from topomap.model.experience import DRIFT, MOST_SLOTS, STRETCH
+from topomap.model.experience import MOST_SLOTS
 from topomap.model.found import Found
 from topomap.model.words import number
 from topomap.questions.explore import Plan
 from topomap.questions.follow import Following, StepAnswer
 from topomap.questions.records import Record
 from topomap.runtime.checks import collection, flag, integer, seconds, whole, whole_if_given
-from topomap.runtime.limits import MOST_COUNTED
+from topomap.runtime.limits import DRIFT, MOST_COUNTED, STRETCH
 from topomap.runtime.watch import Watch
 from topomap.solver.online import Certain
 
@@ -218,8 +218,8 @@ def follow(
     marker: bool = False,
     count_limit: int = MOST_COUNTED,
     timeout: float | None = None,
-    drift: int = DRIFT,
-    stretch: int = STRETCH,
+    drift: int | None = None,
+    stretch: int | None = None,
     **parts: Unpack[OnlineParts],
 ) -> Follower:
     """Follow an exploration as it happens (the hypotheses and the best maps are those of the
@@ -231,7 +231,7 @@ def follow(
         marker: whether the agent carries a marker, for what to do next.
         count_limit: of more hypotheses it is only told that they are more.
         timeout: seconds that the answer to a step may take.
-        drift, stretch: how far shifts and lengths may be wrong, in percent.
+        drift, stretch: how far shifts and lengths may be wrong, in percent; 10 by default.
         parts: what the maps are to have: ``planar``.
 
     Returns:
@@ -244,8 +244,10 @@ def follow(
     planar = "planar" in asked_of(parts, OnlineParts.__annotations__)
     bound, count_limit = whole_if_given("bound", bound, 1), whole("count_limit", count_limit, 1)
     following = Following(planar, bound, flag("marker", marker), count_limit)
-    measured = whole("drift", drift, 0), whole("stretch", stretch, 0)
-    following.record = Record(drift=measured[0], stretch=measured[1])
+    following.record = Record(
+        drift=DRIFT if drift is None else whole("drift", drift, 0),
+        stretch=STRETCH if stretch is None else whole("stretch", stretch, 0),
+    )
     if slots is not None:
         following.record = following.record.with_slots(whole("slots", slots, 2, MOST_SLOTS))
     return Follower(following, seconds("timeout", timeout))

@@ -10,9 +10,10 @@ from topomap.model.experience import Experience
 from topomap.model.facts import parse
 from topomap.model.query import Query
 from topomap.model.vocabulary import FORMS, PARTS, STATED
-from topomap.runtime.checks import flag, seconds, shown, whole_if_given
+from topomap.runtime.checks import flag, percent, seconds, shown, whole_if_given
 from topomap.runtime.watch import Watch
 from topomap.worlds.environment import Environment, environment
+from topomap.worlds.senses import Senses
 
 
 class Parts(TypedDict, total=False):
@@ -112,6 +113,12 @@ def path_of(path: object) -> str:
     if isinstance(path, os.PathLike) and isinstance(named := os.fspath(path), str):
         return named
     raise TypeError(f"the path of a file is wanted, not {shown(path)}")
+
+
+def senses_of(compass: bool, odometry: float | None, lengths: bool, seed: int) -> Senses:
+    """What is measured besides views. Raises ValueError."""
+    error = None if odometry is None else percent("odometry", odometry)
+    return Senses(flag("compass", compass), error, flag("lengths", lengths), seed)
 
 
 def world_of(world: str | Environment, size: Sequence[int], thin: float, seed: int) -> Environment:

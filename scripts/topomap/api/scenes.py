@@ -1,13 +1,14 @@
 """The maps that ``draw``, ``show`` and ``export`` choose from: the best ones of an instance, or
 those in a file of maps."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 from topomap.api.solve import solve_under
 from topomap.documents import maps
 from topomap.drawing import scenes
 from topomap.drawing.scenes import Scene
+from topomap.model.experience import Experience
 from topomap.model.facts import parse
 from topomap.model.query import Query
 from topomap.runtime.errors import InputError
@@ -24,12 +25,19 @@ class Choice(NamedTuple):
     searched: bool
 
 
-def scenes_under(watch: Watch, path: str, query: Query, given: str | None = None) -> Choice:
+def scenes_under(
+    watch: Watch,
+    path: str,
+    query: Query,
+    given: str | None = None,
+    read: Callable[[str, str], Experience] = parse,
+) -> Choice:
     """The maps of a file, under the watch of a command.
 
     Of an instance they are the optimal ones, or the best so far, that have the parts of the
     query, or with a file of maps ``given`` those in it; of a text of ``solve --json`` those in it.
-    Raises InputError, one line.
+    ``read`` makes the experience of the text of an instance and its name. Raises InputError, one
+    line.
     """
     if given is not None:
         return _given(path, query, given)
@@ -39,7 +47,7 @@ def scenes_under(watch: Watch, path: str, query: Query, given: str | None = None
         documents = maps.parse_maps(content, path)
         found = [scene for document in documents for scene in scenes.of_document(document)]
         return Choice(found, _missing(documents, found), False)
-    experience = parse(content, path)
+    experience = read(content, path)
     answer = solve_under(watch, experience, query, optimal=True)
     best = [one.found for one in sorted(answer, key=lambda one: one.at)]
     shown = scenes.of_found(experience, path, best, answer.complete)

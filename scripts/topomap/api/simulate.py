@@ -1,12 +1,12 @@
 """A robot that explores a world which it does not know."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any, Unpack
 
 from topomap.api.maps import Map
-from topomap.api.parts import Parts, query_of, world_of
+from topomap.api.parts import Parts, query_of, senses_of, world_of
 from topomap.model.experience import Experience
 from topomap.model.query import Query
 from topomap.model.reply import Reply
@@ -17,6 +17,8 @@ from topomap.runtime.checks import flag, seconds, share, whole, whole_if_given
 from topomap.runtime.limits import MOST_STEPS
 from topomap.runtime.watch import Watch
 from topomap.worlds.environment import Environment
+from topomap.worlds.instance import NOTHING
+from topomap.worlds.senses import Senses
 
 STEPS = 20  # for each way
 
@@ -97,6 +99,11 @@ def simulate(
     marker: bool = False,
     bound: int | None = None,
     timeout: float | None = None,
+    compass: bool = False,
+    odometry: float | None = None,
+    lengths: bool = False,
+    drift: int | None = None,
+    stretch: int | None = None,
     **parts: Unpack[Parts],
 ) -> Simulation:
     """Let a robot explore a world until it has one closed optimal map, or no walk can tell its
@@ -114,6 +121,9 @@ def simulate(
         marker: whether the robot carries a marker that it may put down.
         bound: what it takes for granted: so many places at most.
         timeout: stop after so many seconds, the walks for comparison too.
+        compass, odometry, lengths: what it measures besides views, as in ``generate``.
+        drift, stretch: how far it takes its shifts and lengths to be wrong, in percent; 10 by
+            default, or as much as ``odometry``.
         parts: what it takes for granted: ``planar``, ``perpendicular``.
 
     Returns:
@@ -136,7 +146,10 @@ def simulate(
     world = world_of(world, size, thin, seed)
     if signs:
         world = world.signed(signs, seed)
-    return simulate_under(watch, world, query, start, facing, steps, marker)
+    senses = senses_of(compass, odometry, lengths, seed)
+    percents = whole_if_given("drift", drift, 0), whole_if_given("stretch", stretch, 0)
+    senses = replace(senses, drift=percents[0], stretch=percents[1])
+    return simulate_under(watch, world, query, start, facing, steps, marker, senses)
 
 
 def simulate_under(
@@ -147,8 +160,9 @@ def simulate_under(
     facing: int | None,
     steps: int | None,
     marker: bool,
+    senses: Senses = NOTHING,
 ) -> Simulation:
     """The same in an environment that was made, under the watch of a command."""
     there, dstate = start_of(world, start, facing)
-    most = min(STEPS * len(there.links) // 2, MOST_STEPS) if steps is None else steps
-    return Simulation(world.name, explored(there, dstate, query, watch, most, marker))
+    most = min(STEPS * len(there.map.links) // 2, MOST_STEPS) if steps is None else steps
+    return Simulation(world.name, explored(there, dstate, query, watch, most, marker, senses))

@@ -10,7 +10,7 @@ from typing import Any, NoReturn
 from topomap.cli.subcommands import SUBCOMMANDS
 from topomap.model.vocabulary import FORMS, PARTS, PRUNING
 from topomap.runtime.errors import InputError
-from topomap.runtime.limits import LARGEST
+from topomap.runtime.limits import DRIFT, LARGEST, STRETCH
 
 STATUS = """\
 exit status: 0 done; 1 the answer is no (the table differs, no map, an unsound map);
@@ -79,6 +79,19 @@ def add_start(add: Any, facing: str) -> None:
         metavar="RATE",
         help="share of places that carry their own name as a landmark",
     )
+
+
+def add_senses(add: Any) -> None:
+    """What is measured besides views."""
+    add("--compass", action="store_true", help="note the compass slot of the gateway stood at")
+    add(
+        "--odometry",
+        type=number(float, 0, 1000),
+        metavar="PERCENT",
+        help="note how far each step led, with errors of at most so many percent of the way, drawn "
+        "with --seed; the truth is consistent with as large a --drift",
+    )
+    add("--lengths", action="store_true", help="note how long each step was")
 
 
 def add_environments(command: Parser, common: Parser, rest: str) -> Any:
@@ -154,6 +167,36 @@ def add_asked(
     if horizon:
         add("--horizon", type=number(int, 0), metavar="T", help="cut the experience after step T")
     add("--timeout", type=number(float, 0.001), metavar="S", help=limit)
+
+
+def add_known(command: Parser) -> None:
+    """What is known of an instance besides its facts."""
+    add = command.add_argument
+    add(
+        "--assume",
+        action="append",
+        metavar="STATEMENT",
+        help="take a statement for granted, such as 'same(3,12)', 'not same(3,12)' or "
+        "'places < 12', as in topomap ask --help; can be given several times",
+    )
+    add_measured(command)
+
+
+def add_measured(command: Parser) -> None:
+    """How far what was measured may be wrong."""
+    add = command.add_argument
+    add(
+        "--drift",
+        type=number(int, 0),
+        metavar="P",
+        help=f"shifts may be wrong by P percent of the way (default: {DRIFT})",
+    )
+    add(
+        "--stretch",
+        type=number(int, 0),
+        metavar="P",
+        help=f"lengths of one way may differ by P percent (default: {STRETCH})",
+    )
 
 
 def add_query(command: Parser, parts: Iterable[str], horizon: bool = True) -> None:
@@ -235,6 +278,7 @@ def add_scene(command: Parser) -> None:
         "topomap solve --json (- is standard input)",
     )
     add("--map", type=number(int, 1), metavar="N", help="take the N-th map (default: 1)")
+    add_known(command)
     add_asked(
         command, PRUNING, limit="stop the search for maps after S seconds, and take what was found"
     )

@@ -4,8 +4,8 @@ import argparse
 import json
 from typing import IO, TYPE_CHECKING, Any
 
-from topomap.cli.arguments import add_query, command
-from topomap.cli.calls import asked_query
+from topomap.cli.arguments import add_known, add_query, command
+from topomap.cli.calls import asked_query, experience_of
 from topomap.runtime import formats
 from topomap.runtime.files import output
 from topomap.runtime.status import exit_status
@@ -22,16 +22,16 @@ def add(group: Any) -> None:
         "  topomap branching instances/grid-4x4-snake.lp --bound 16",
     )
     made.add_argument("instance", metavar="INSTANCE")
+    add_known(made)
     add_query(made, ["perpendicular"])
 
 
 def run(args: argparse.Namespace) -> int:
     """Check the paper's equation (1) at every branching node of the planar tree."""
     from topomap.api.branching import branching_nodes_under
-    from topomap.api.read import read
     from topomap.runtime.watch import heeding
 
-    experience = read(args.instance)
+    experience = experience_of(args, args.instance)
     with output(args.output) as out:
         with heeding(args.timeout) as watch:
             nodes = branching_nodes_under(watch, experience, asked_query(args))

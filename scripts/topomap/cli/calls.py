@@ -12,6 +12,44 @@ if TYPE_CHECKING:
     from topomap.model.query import Query
     from topomap.solver.share import Crew
     from topomap.worlds.environment import Environment
+    from topomap.worlds.senses import Senses
+
+
+# Where not the maps of the whole are asked for, but those of each beginning, or of a file.
+ONLY_PAIRS = ("branching", "check", "count", "search")
+
+
+def experience_of(args: argparse.Namespace, path: str, noisy: bool = False) -> "Experience":
+    """The experience in an instance file, with what is taken for granted. Raises InputError."""
+    from topomap.model import facts
+
+    return known(args, facts.read(path, noisy, args.drift, args.stretch))
+
+
+def parsed(args: argparse.Namespace, text: str, source: str) -> "Experience":
+    """The same of the text of an instance, which ``source`` names."""
+    from topomap.model import facts
+
+    return known(args, facts.parse(text, source, False, args.drift, args.stretch))
+
+
+def known(args: argparse.Namespace, experience: "Experience") -> "Experience":
+    """An experience with what is taken for granted. Raises InputError."""
+    if not args.assume:
+        return experience
+    from topomap.api.assume import assumed
+
+    name = f"topomap {args.command}: --assume"
+    horizon = getattr(args, "horizon", None)
+    seen = experience if horizon is None else experience.cut(horizon)
+    told = assumed(name, seen, tuple(args.assume))
+    if told.assumed and args.command in ONLY_PAIRS:
+        raise InputError(f"{name}: here it can be same(T,U) or not same(T,U) only")
+    if told.assumed and getattr(args, "encoding", "work") == "paper":
+        raise InputError(f"{name}: with --encoding paper it can be same(T,U) or not same(T,U) only")
+    if told.assumed and getattr(args, "by", "auto") == "search":
+        raise InputError(f"{name}: with --by search it can be same(T,U) or not same(T,U) only")
+    return told
 
 
 def parts_of(args: argparse.Namespace, of: Iterable[str] = PARTS) -> dict[str, bool]:
@@ -58,6 +96,14 @@ def run_of(args: argparse.Namespace, *experiences: "Experience") -> dict[str, An
     return {"command": args.command, **asked, "facts and encodings": digest(*experiences)}
 
 
+def senses_of(args: argparse.Namespace) -> "Senses":
+    """What a robot measures besides views."""
+    from topomap.worlds.senses import Senses
+
+    measured = getattr(args, "drift", None), getattr(args, "stretch", None)
+    return Senses(args.compass, args.odometry, args.lengths, args.seed or 0, *measured)
+
+
 def environment_of(args: argparse.Namespace) -> "Environment":
     """The environment that a call of ``generate`` or ``simulate`` names."""
     from topomap.worlds import environment, network
@@ -67,5 +113,7 @@ def environment_of(args: argparse.Namespace) -> "Environment":
         for warning in warnings:
             say(f"warning: {warning}")
         return world
-    thinned = {"thin": args.thin, "seed": args.seed or 0} if args.kind == "maze" else {}
+    thinned: dict[str, Any] = (
+        {"thin": args.thin, "seed": args.seed or 0} if args.kind == "maze" else {}
+    )
     return environment.environment(args.kind, args.rows, args.columns, **thinned)

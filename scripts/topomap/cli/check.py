@@ -3,8 +3,8 @@
 import argparse
 from typing import Any
 
-from topomap.cli.arguments import add_query, command, number
-from topomap.cli.calls import asked_query
+from topomap.cli.arguments import add_known, add_query, command, number
+from topomap.cli.calls import asked_query, experience_of
 from topomap.cli.tell import tell
 from topomap.model.vocabulary import PROPERTIES
 from topomap.runtime.errors import InputError
@@ -39,17 +39,18 @@ def add(group: Any) -> None:
         "file allows",
     )
     add_query(made, PROPERTIES, horizon=False)
+    add_known(made)
 
 
 def run(args: argparse.Namespace) -> int:
     """Check maps that anyone made, by rules and by definition."""
     from topomap.api.check import check_under
     from topomap.documents import maps
-    from topomap.model.facts import read
     from topomap.runtime.watch import heeding
 
     documents = maps.read_maps(args.maps)
-    experience = read(args.instance, maps.noisy(documents) or args.noise is not None)
+    noisy = maps.noisy(documents) or args.noise is not None
+    experience = experience_of(args, args.instance, noisy)
     documents = maps.of_instance(documents, args.instance)
     if not documents:
         raise InputError(f"{args.maps}: no maps of {args.instance} in it")

@@ -3,8 +3,15 @@
 import argparse
 from typing import Any
 
-from topomap.cli.arguments import add_circumscribe, add_crew, add_query, add_resume, command
-from topomap.cli.calls import asked_query, crew_of, run_of
+from topomap.cli.arguments import (
+    add_circumscribe,
+    add_crew,
+    add_known,
+    add_query,
+    add_resume,
+    command,
+)
+from topomap.cli.calls import asked_query, crew_of, experience_of, run_of
 from topomap.cli.tell import tell
 from topomap.model.vocabulary import OPTIMIZING, PARTS
 from topomap.runtime.files import output
@@ -22,6 +29,7 @@ def add(group: Any) -> None:
   topomap count instances/grid-3x4-paper.lp --circumscribe""",
     )
     made.add_argument("instance", metavar="INSTANCE")
+    add_known(made)
     add_query(made, [part for part in PARTS if part not in OPTIMIZING])
     add_circumscribe(made)
     add_crew(made)
@@ -31,10 +39,9 @@ def add(group: Any) -> None:
 def run(args: argparse.Namespace) -> int:
     """Count the search tree of an instance, by clingo."""
     from topomap.api.count import count_under
-    from topomap.api.read import read
     from topomap.runtime.watch import heeding
 
-    experience = read(args.instance)
+    experience = experience_of(args, args.instance)
     with (
         crew_of(args) as crew,
         Journal(args.output, run_of(args, experience), args.resume) as journal,

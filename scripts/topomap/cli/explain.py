@@ -3,8 +3,8 @@
 import argparse
 from typing import Any
 
-from topomap.cli.arguments import add_query, command
-from topomap.cli.calls import asked_query
+from topomap.cli.arguments import add_known, add_query, command
+from topomap.cli.calls import asked_query, experience_of
 from topomap.cli.tell import tell
 from topomap.model.vocabulary import DEMANDS, VOCABULARY
 from topomap.runtime.files import output
@@ -24,16 +24,16 @@ def add(group: Any) -> None:
     )
     made.add_argument("instance", metavar="INSTANCE")
     made.add_argument("statement", nargs="?", metavar="STATEMENT")
+    add_known(made)
     add_query(made, DEMANDS)
 
 
 def run(args: argparse.Namespace) -> int:
     """Tell why a statement is so."""
     from topomap.api.explain import explain_under
-    from topomap.api.read import read
     from topomap.runtime.watch import heeding
 
-    experience = read(args.instance)
+    experience = experience_of(args, args.instance)
     with output(args.output) as out:
         with heeding(args.timeout) as watch:
             answer = explain_under(watch, experience, args.statement, asked_query(args))

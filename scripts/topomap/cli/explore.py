@@ -4,8 +4,8 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from topomap.cli.arguments import add_query, command, number
-from topomap.cli.calls import asked_query
+from topomap.cli.arguments import add_known, add_query, command, number
+from topomap.cli.calls import asked_query, experience_of
 from topomap.cli.tell import tell
 from topomap.model.vocabulary import PRUNING
 from topomap.runtime import formats
@@ -64,15 +64,15 @@ def add(group: Any) -> None:
         "--facts", action="store_true", help="print the maps as facts for encodings/explore.lp"
     )
     add_query(made, PRUNING)
+    add_known(made)
 
 
 def run(args: argparse.Namespace) -> int:
     """Say where to go next."""
     from topomap.api.explore import candidates_under, explore_under
-    from topomap.api.read import read
     from topomap.runtime.watch import heeding
 
-    experience = read(args.instance)
+    experience = experience_of(args, args.instance)
     if args.proof and args.output and Path(args.proof).resolve() == Path(args.output).resolve():
         raise InputError(f"{args.proof}: it cannot be both --output and --proof")
     if args.check:

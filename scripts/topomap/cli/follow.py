@@ -4,7 +4,7 @@ import argparse
 import time
 from typing import TYPE_CHECKING, Any
 
-from topomap.cli.arguments import command, number
+from topomap.cli.arguments import add_measured, command, number
 from topomap.model.vocabulary import PARTS
 from topomap.runtime import formats
 from topomap.runtime.errors import InputError, say
@@ -28,8 +28,10 @@ def add(group: Any) -> None:
 
 lines: the facts of a step, as generate writes them: turn(1,0). view(1,0). view(1,2).
   or JSON: {"slots": 4, "view": [0, 1]} first, then {"turn": 2, "view": [0, 2]}; each may have
-  "landmarks": ["a"], and "drop", "pick" or "marker": true. undo. or {"undo": 2} takes the last
-  steps back. Facts that a line adds to the last step amend it.
+  "landmarks": ["a"], and "drop", "pick" or "marker": true; "compass": 2, "shift": [3, -1],
+  "length": 12, and "same": [4] or "apart": [4], the earlier steps after which the agent was at
+  this place, or at another one. undo. or {"undo": 2} takes the last steps back. Facts that a line
+  adds to the last step amend it.
 
 what is certain: new(T), the place where the agent is after step T was not visited before;
   same(T,U) and linked(T,S,U,R) as in topomap ask --help. What is certain stays certain.""",
@@ -62,6 +64,7 @@ what is certain: new(T), the place where the agent is after step T was not visit
         metavar="N",
         help="if there are more than N hypotheses, say only that (default: %(default)s)",
     )
+    add_measured(made)
     add("--timeout", type=number(float, 0.001), metavar="S", help="at most S seconds for each step")
     add(
         "--keep-going",
@@ -81,7 +84,12 @@ def run(args: argparse.Namespace) -> int:
     if args.log is not None and args.file != "-":
         raise InputError("topomap follow: --log is for standard input; a FILE is its own log")
     follower = follow(
-        planar=args.planar, bound=args.bound, marker=args.marker, count_limit=args.count_limit
+        planar=args.planar,
+        bound=args.bound,
+        marker=args.marker,
+        count_limit=args.count_limit,
+        drift=args.drift,
+        stretch=args.stretch,
     )
     log = Log(args.log) if args.log is not None else None
     source = "standard input" if args.file == "-" else args.file

@@ -5,7 +5,14 @@ import contextlib
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from topomap.cli.arguments import Parser, add_environments, add_start, command, number
+from topomap.cli.arguments import (
+    Parser,
+    add_environments,
+    add_senses,
+    add_start,
+    command,
+    number,
+)
 from topomap.cli.calls import environment_of
 from topomap.runtime import formats
 from topomap.runtime.errors import InputError
@@ -25,6 +32,7 @@ def add(group: Any) -> None:
         """\
   topomap generate grid 3 4 --route snake -o grid-3x4-snake.lp
   topomap generate torus 3 3 --route walk --steps 20 --seed 1
+  topomap generate grid 4 4 --route snake --compass --odometry 5 --seed 1
   topomap generate network city.graphml --slots 4 --north 29 --route tour --signs 0.3""",
     )
     common = Parser(add_help=False)
@@ -42,8 +50,9 @@ def add(group: Any) -> None:
         "--seed",
         type=number(int, 0),
         metavar="N",
-        help="seed for walk, signs and maze (default: 0)",
+        help="seed for walk, signs, maze and odometry (default: 0)",
     )
+    add_senses(add)
     add("--name", help="name of the instance (default: made from the arguments)")
     add("--truth", metavar="FILE", help="also write the true hypothesis, for solve --truth")
     add("--json", action="store_true", help="print a summary as JSON")
@@ -95,4 +104,7 @@ def instance_of(args: argparse.Namespace) -> "Instance":
         signs=args.signs,
         seed=args.seed,
         name=args.name,
+        compass=args.compass,
+        odometry=args.odometry,
+        lengths=args.lengths,
     )

@@ -3,8 +3,8 @@
 import argparse
 from typing import Any
 
-from topomap.cli.arguments import add_asked, command, number
-from topomap.cli.calls import asked_query
+from topomap.cli.arguments import add_asked, add_known, command, number
+from topomap.cli.calls import asked_query, experience_of
 from topomap.model.vocabulary import PRUNING
 from topomap.runtime.errors import InputError, say
 from topomap.runtime.status import exit_status
@@ -36,12 +36,12 @@ def add(group: Any) -> None:
     )
     add("-o", "--output", metavar="FILE", help="file to write (default: stdout)")
     add_asked(made, PRUNING)
+    add_known(made)
     made.set_defaults(timeout=60.0)
 
 
 def run(args: argparse.Namespace) -> int:
     """Write the page about the instances."""
-    from topomap.api.read import read
     from topomap.runtime.extras import need
     from topomap.runtime.files import output
     from topomap.runtime.watch import heeding
@@ -49,7 +49,7 @@ def run(args: argparse.Namespace) -> int:
     need("draw", "topomap report")
     from topomap.api.report import report_under
 
-    seen = [(path, read(path)) for path in args.instance]
+    seen = [(path, experience_of(args, path)) for path in args.instance]
     if len(dict(seen)) < len(seen):
         raise InputError("topomap report: an instance is named twice")
     if args.maps_from is not None and len(seen) > 1:

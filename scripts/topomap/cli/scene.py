@@ -1,9 +1,10 @@
 """The map that ``draw``, ``show`` and ``export`` are asked for."""
 
 import argparse
+from functools import partial
 from typing import TYPE_CHECKING
 
-from topomap.cli.calls import asked_query
+from topomap.cli.calls import asked_query, parsed
 from topomap.model.vocabulary import PRUNING
 from topomap.runtime.errors import InputError, say
 from topomap.runtime.status import exit_status
@@ -22,7 +23,8 @@ def scene_of(args: argparse.Namespace) -> "tuple[Scene | None, int]":
     need("draw", f"topomap {args.command}")
     query = asked_query(args, PRUNING)
     with heeding(args.timeout) as watch:
-        found, fault, searched = scenes_under(watch, args.file, query, args.given)
+        read = partial(parsed, args)
+        found, fault, searched = scenes_under(watch, args.file, query, args.given, read)
     number = args.map or 1
     source = args.file if args.given is None else args.given
     if fault:

@@ -3,8 +3,8 @@
 import argparse
 from typing import TYPE_CHECKING, Any
 
-from topomap.cli.arguments import add_query, command
-from topomap.cli.calls import asked_query
+from topomap.cli.arguments import add_known, add_query, command
+from topomap.cli.calls import asked_query, experience_of
 from topomap.cli.tell import tell
 from topomap.model.vocabulary import PRUNING
 from topomap.runtime.files import output
@@ -25,6 +25,7 @@ def add(group: Any) -> None:
   topomap search instances/grid-4x4-snake.lp --order best --planar --perpendicular""",
     )
     made.add_argument("instance", metavar="INSTANCE")
+    add_known(made)
     made.add_argument(
         "--order",
         choices=("breadth", "depth", "best"),
@@ -37,11 +38,10 @@ def add(group: Any) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Search the tree of an instance: count it, or find a closed map best-first."""
-    from topomap.api.read import read
     from topomap.api.search import count_by_search_under
     from topomap.runtime.watch import heeding
 
-    experience = read(args.instance)
+    experience = experience_of(args, args.instance)
     if args.order == "best":
         return _best_first(args, experience)
     with output(args.output) as out:

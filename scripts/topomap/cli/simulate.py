@@ -10,11 +10,13 @@ from topomap.cli.arguments import (
     Parser,
     add_asked,
     add_environments,
+    add_measured,
+    add_senses,
     add_start,
     command,
     number,
 )
-from topomap.cli.calls import asked_query, environment_of
+from topomap.cli.calls import asked_query, environment_of, senses_of
 from topomap.cli.tell import tell
 from topomap.model.vocabulary import PRUNING
 from topomap.runtime import formats
@@ -50,6 +52,8 @@ def add(group: Any) -> None:
         metavar="N",
         help="walk at most N steps (default: 20 for each way)",
     )
+    add_senses(add)
+    add_measured(common)
     add("--marker", action="store_true", help="the robot carries a marker, and may put it down")
     add("--instance", metavar="FILE", help="also write what the robot did and saw, as an instance")
     add_asked(common, PRUNING, horizon=False)
@@ -107,7 +111,7 @@ def _simulated(
     from topomap.api.simulate import simulate_under
 
     query = asked_query(args, PRUNING)
-    how = args.start, args.facing, args.steps, args.marker
+    how = args.start, args.facing, args.steps, args.marker, senses_of(args)
     return simulate_under(watch, environment, query, *how)
 
 

@@ -8,13 +8,14 @@ from topomap.cli.arguments import (
     add_circumscribe,
     add_crew,
     add_encoding,
+    add_known,
     add_optimal,
     add_query,
     add_resume,
     command,
     number,
 )
-from topomap.cli.calls import asked_query, crew_of, run_of
+from topomap.cli.calls import asked_query, crew_of, experience_of, run_of
 from topomap.model.vocabulary import PARTS
 from topomap.runtime import formats
 from topomap.runtime.errors import InputError
@@ -41,6 +42,7 @@ def add(group: Any) -> None:
   topomap solve instances/grid-3x3-misread.lp --optimal --planar --noise 1""",
     )
     made.add_argument("instance", nargs="+", metavar="INSTANCE")
+    add_known(made)
     add_optimal(made)
     add_circumscribe(made)
     made.add_argument("--limit", type=number(int, 1), metavar="N", help="stop after N maps")
@@ -71,12 +73,11 @@ def add(group: Any) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Enumerate the maps of each instance."""
-    from topomap.api.read import read
 
     _combined(args)
     inputs = []
     for path in args.instance:
-        experience = read(path, args.noise is not None)
+        experience = experience_of(args, path, args.noise is not None)
         truth = None
         if args.truth:
             from topomap.documents.maps import real_map

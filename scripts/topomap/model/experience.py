@@ -7,13 +7,12 @@ from typing import TypeVar
 from topomap.model.terms import spelt
 from topomap.model.topology import Gateway, Place, TopologicalMap
 from topomap.runtime.checks import collection, integer, shown, whole, whole_if_given
-from topomap.runtime.limits import LARGEST
+from topomap.runtime.limits import DRIFT, STRETCH
 
 DState = tuple[int, int]
 Misread = tuple[int, int | str]  # a step, and a gateway or a landmark that was missed or imagined
 MOST_SLOTS = 10**6  # sums of slots then stay below it
 MARKER = ("drop", "pick", "marker")
-DRIFT, STRETCH = 10, 10  # percent, as encodings/theory/ has them
 Shift = tuple[int, int]  # how far a step moved the agent, in one fixed frame
 Visits = tuple[int, int]  # two visits, each named by its step, the earlier one first
 
@@ -54,7 +53,8 @@ class Experience:
     ``shifts[t - 1]`` how far step t moved the agent, and ``lengths[t - 1]`` how long it was. Each
     is None where it is not told, and the whole is empty where it is told of no step. ``same`` and
     ``apart`` hold pairs of visits that are known to be of one place, or of two. Shifts may be wrong
-    by ``drift`` percent of the way, and lengths by ``stretch`` percent.
+    by ``drift`` percent of the way, and lengths by ``stretch`` percent. ``assumed`` holds what else
+    is taken for granted (``topomap.assume``): the terms of statements, each with whether it holds.
     """
 
     slots: int
@@ -71,6 +71,7 @@ class Experience:
     apart: frozenset[Visits]
     drift: int
     stretch: int
+    assumed: frozenset[tuple[str, bool]]
 
     def __init__(
         self,
@@ -136,10 +137,10 @@ class Experience:
         moved = _each("shifts", shifts, many - 1, _shift)
         measured = _each("lengths", lengths, many - 1, integer)
         pairs = [_pairs(name, of, len(done)) for name, of in (("same", same), ("apart", apart))]
-        percents = whole("drift", drift, 0, LARGEST), whole("stretch", stretch, 0, LARGEST)
+        percents = whole("drift", drift, 0), whole("stretch", stretch, 0)
         values = (
             *(integer("slots", slots), seen, done, signs, *marks),
-            *(north, moved, measured, *pairs, *percents),
+            *(north, moved, measured, *pairs, *percents, frozenset[tuple[str, bool]]()),
         )
         for one, value in zip(fields(self), values, strict=True):
             object.__setattr__(self, one.name, value)
@@ -186,6 +187,18 @@ class Experience:
         return self._but(
             same=self.same | _pairs("same", same, self.steps),
             apart=self.apart | _pairs("apart", apart, self.steps),
+        )
+
+    def granted(self, term: str, holds: bool) -> "Experience":
+        """The same experience, of which it is taken for granted that a statement of
+        ``encodings/query.lp`` holds, or does not."""
+        return self._but(assumed=self.assumed | {(term, holds)})
+
+    def assumptions(self) -> str:
+        """What is taken for granted, as facts and rules beside ``encodings/query.lp``."""
+        return "".join(
+            f"ask({term}). :- {'not ' * holds}holds({term}).\n"
+            for term, holds in sorted(self.assumed)
         )
 
     def constants(self) -> list[str]:

@@ -213,6 +213,8 @@ class Explainer:
         even the whole has one, which is then kept. What a beginning cannot have, no longer one
         has, if it is of the lasting kind (a map of the longer one holds a map of the shorter)."""
         last = self.experience.steps
+        if self.experience.assumed:  # of the whole: it says nothing of a beginning
+            return None if self._has_map(last, self.query, goal) else (last, self.query)
         lasting = replace(self.query, parts=self.query.parts - LATE)
         if goal is None or self.lasting:
             high = 0 if goal is None else self.first  # the statement is about no earlier step

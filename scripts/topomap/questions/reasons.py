@@ -362,8 +362,8 @@ def _far(experience: Experience, one: int, other: int) -> str:
     way = sum(abs(x) + abs(y) for x, y in moved)
     wrong = Fraction(experience.drift * way, 100)
     return (
-        f"step {other} is at least {_decimal(apart - wrong)} units from step {one} by its odometry: "
-        f"{apart} were measured, on a way of {way}, which may be wrong by {experience.drift} %"
+        f"step {other} is at least {_decimal(apart - wrong)} units from step {one} by its "
+        f"odometry: {apart} were measured, on a way of {way}, wrong by {experience.drift} % at most"
     )
 
 

@@ -13,10 +13,11 @@ import clingo
 
 from topomap.documents.maps import is_number
 from topomap.model import words
-from topomap.model.experience import DRIFT, MARKER, STRETCH, Step, marker_fault, marker_out
+from topomap.model.experience import MARKER, Step, marker_fault, marker_out
 from topomap.model.facts import PAIRS, SIGNATURES, ground_facts, misfit, range_fault, slots_fault
 from topomap.model.terms import cut_short
 from topomap.runtime.errors import InputError
+from topomap.runtime.limits import DRIFT, STRETCH
 
 KNOWN = {**SIGNATURES, "undo": "undo(N)"}  # of which undo is a line by itself
 KNOWN_KEYS = {  # of a step in JSON, with what each wants

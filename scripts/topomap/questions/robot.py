@@ -8,12 +8,11 @@ best ones apart.
 import contextlib
 import statistics
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import islice
 from typing import Any
 
-from topomap.model.experience import Experience
-from topomap.model.experience import observe as experienced
+from topomap.model.experience import DState, Experience
 from topomap.model.found import Found
 from topomap.model.query import Query
 from topomap.model.topology import Gateway, Place, TopologicalMap, label
@@ -26,6 +25,8 @@ from topomap.runtime.watch import Attempt, Watch
 from topomap.solver import choice, solving
 from topomap.worlds import route
 from topomap.worlds.environment import Environment
+from topomap.worlds.instance import NOTHING, measured
+from topomap.worlds.senses import Senses
 from topomap.worlds.tours import tour as tour_of
 
 MOST_MAPS = 100  # best maps of which a walk is planned, while none is closed
@@ -173,7 +174,7 @@ def table(rows: Sequence[dict[str, Any]]) -> str:
 
 def start_of(
     environment: Environment, place: str | None = None, facing: int | None = None
-) -> tuple[TopologicalMap, Gateway]:
+) -> tuple[Environment, Gateway]:
     """What can be walked to in an environment from a place (the smallest, unless told), and the
     gateway there where the robot stands first (the smallest, too). Raises InputError where it
     cannot be mapped."""
@@ -183,7 +184,7 @@ def start_of(
     if slot not in stars[start]:
         raise InputError(f"{environment.name}: place {label(start)} has no gateway {slot}")
     try:
-        return reached(environment.map, start), (start, slot)
+        return replace(environment, map=reached(environment.map, start)), (start, slot)
     except InputError as error:
         raise InputError(f"{environment.name}: {error}") from None
 
@@ -244,8 +245,9 @@ def _length(world: TopologicalMap, start: Place, seed: int, watch: Watch) -> flo
 class Robot:
     """Where a robot is in the world, what it did, and what it saw."""
 
-    def __init__(self, world: TopologicalMap, start: Gateway):
-        self.world, self.start = world, start
+    def __init__(self, environment: Environment, start: Gateway, senses: Senses):
+        self.environment, self.world, self.start = environment, environment.map, start
+        self.senses = senses
         self.dstate = start
         self.route: list[int] = []
         self.drops: list[int] = []
@@ -258,7 +260,11 @@ class Robot:
 
     def experience(self) -> Experience:
         """What it did and saw."""
-        return experienced(self.world, self.start, self.route, self.drops)[0]
+        return self._measured()[0]
+
+    def _measured(self) -> tuple[Experience, tuple[DState, ...]]:
+        """The same, and the true hypothesis."""
+        return measured(self.environment, self.start, self.route, self.senses, self.drops)
 
     def sight(self) -> Prediction:
         """What it sees where it is."""
@@ -268,22 +274,24 @@ class Robot:
 
     def mapped(self, maps: Sequence[Found]) -> bool:
         """Whether one of the maps is the whole world, and the robot there where it thinks."""
-        experience, truth = experienced(self.world, self.start, self.route, self.drops)
+        experience, truth = self._measured()
         whole = len(experience.map_of(truth).links) == len(self.world.links)
         return whole and any(one.at == truth for one in maps)
 
 
 def simulate(
-    world: TopologicalMap,
+    environment: Environment,
     start: Gateway,
     query: Query,
     watch: Watch,
     most: int,
     marker: bool = False,
+    senses: Senses = NOTHING,
 ) -> Outcome:
     """A robot explores a world that it can walk through as a whole (see ``reached``), from a
-    gateway, for ``most`` steps at most. What the query has is taken for granted of its map."""
-    robot = Robot(world, start)
+    gateway, for ``most`` steps at most. What the query has is taken for granted of its map;
+    ``senses`` tells what it measures besides views."""
+    robot, world = Robot(environment, start, senses), environment.map
     maps: list[Found] = []
     end = ""
     with Attempt() as attempt:

@@ -63,6 +63,14 @@ def share(name: str, value: Any) -> float:
     return number
 
 
+def percent(name: str, value: Any) -> float:
+    """A number of percent, 0 to 1000."""
+    number = _real(value)
+    if not 0 <= number <= 1000:
+        raise ValueError(f"{said(name, value)}: it must be a number of percent, from 0 to 1000")
+    return number
+
+
 def flag(name: str, value: Any) -> bool:
     """True or False, and nothing else that Python takes for one of them."""
     if not isinstance(value, bool):

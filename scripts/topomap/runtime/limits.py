@@ -3,6 +3,7 @@ from what does the work, so that help and a mistyped call need not wait until th
 loaded."""
 
 LARGEST = 2**31 - 1  # what clingo's numbers hold
+DRIFT, STRETCH = 10, 10  # percent that shifts and lengths may be wrong by, unless told
 MOST_PLACES = MOST_STEPS = 10**5  # of an environment, and of an exploration
 MOST_WALKED = 1000  # steps of a further walk that `explore` may look for
 LONGEST_WALK = 30  # steps of a further walk that `explore` looks for, unless told

@@ -67,7 +67,7 @@ class Trial:
         self.least: tuple[int, ...] | None = None
         self._query, self._next = query, OFTEN
         watch.by, watch.least = CLINGO, None
-        if query.encoding != "work" or query.noise is not None:
+        if query.encoding != "work" or query.noise is not None or experience.assumed:
             return
         watch.by = SEARCH
         descent = Descent(experience, query, kind, self._heed)

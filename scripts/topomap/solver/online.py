@@ -13,10 +13,10 @@ from typing import Any
 
 import clingo
 
-from topomap.model.experience import DRIFT, MARKER, STRETCH, DState, Experience, Step
+from topomap.model.experience import MARKER, DState, Experience, Step
 from topomap.model.query import Query
 from topomap.runtime.folders import ENCODINGS
-from topomap.runtime.limits import MOST_COUNTED
+from topomap.runtime.limits import DRIFT, MOST_COUNTED, STRETCH
 from topomap.runtime.watch import Attempt, Watch
 from topomap.search.hypothesis import OFTEN, Hypothesis
 from topomap.search.traversal import root

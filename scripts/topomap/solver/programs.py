@@ -71,7 +71,10 @@ class Program:
             options += more
         elif query.encoding == "paper":
             entry += beyond(experience)
-        self.control = control(query, experience.facts() + facts, entry, options)
+        if experience.assumed:
+            query = query.having("query")
+        told = experience.facts() + facts + experience.assumptions()
+        self.control = control(query, told, entry, options)
         self._grounded = self._interrupted = False
         self.changed = False  # whether rules were added by which it has fewer answers
         self._solved = self.control  # now or next

@@ -35,7 +35,9 @@ def demand_cover(
 
 def digest(*experiences: Experience) -> str:
     """What tells the program, its encodings and these experiences from other ones."""
-    texts = [_program_digest(), *(experience.facts() for experience in experiences)]
+    texts = [_program_digest()]
+    for seen in experiences:
+        texts += [seen.facts(), *seen.constants(), seen.assumptions()]
     return hashlib.sha256("".join(texts).encode()).hexdigest() if experiences else texts[0]
 
 

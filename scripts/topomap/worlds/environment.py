@@ -7,7 +7,7 @@ slot is a compass direction (slot 0 is north on a grid).
 import math
 import random
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import clingo
@@ -17,7 +17,9 @@ from topomap.runtime import nx
 from topomap.runtime.checks import share, whole
 from topomap.runtime.errors import InputError
 from topomap.runtime.limits import MOST_PLACES
+from topomap.worlds.senses import Move
 
+UNIT = 100  # as long is a way of a grid or of a lattice
 NORTH, EAST, SOUTH, WEST = range(4)
 MOVES = {NORTH: (-1, 0), EAST: (0, 1), SOUTH: (1, 0), WEST: (0, -1)}
 
@@ -27,7 +29,9 @@ class Environment:
     """A world, what it is called, and how it was made.
 
     ``call`` is the part of a ``topomap generate`` call that makes it; ``shape`` its
-    rows and columns, where a route may count on them; ``notes`` go into headers.
+    rows and columns, where a route may count on them; ``notes`` go into headers. ``moves`` tells of
+    each gateway how far its way leads, east and north: in hundredths of a way of a grid or a
+    lattice, in metres of a network, or in its own units where that is a plane.
     """
 
     name: str
@@ -35,6 +39,7 @@ class Environment:
     map: TopologicalMap
     shape: tuple[int, int] | None = None
     notes: tuple[str, ...] = ()
+    moves: Mapping[Gateway, Move] = field(default_factory=dict)
 
     def place(self, text: str) -> Place:
         """The place with this label. Raises InputError if there is none."""
@@ -92,7 +97,14 @@ def grid(rows: int, columns: int, kind: str = "grid") -> Environment:
                 if there[0] < rows and there[1] < columns:
                     _link(links, ((row, column), slot), (there, (slot + 2) % 4))
     call = kind, str(rows), str(columns)
-    return Environment(f"{kind}-{rows}x{columns}", call, world(4, links), (rows, columns))
+    made = world(4, links)
+    name = f"{kind}-{rows}x{columns}"
+    return Environment(name, call, made, (rows, columns), (), _squares(links))
+
+
+def _squares(links: Iterable[Gateway]) -> dict[Gateway, Move]:
+    """How far the ways of a grid lead."""
+    return {(place, slot): (UNIT * MOVES[slot][1], -UNIT * MOVES[slot][0]) for place, slot in links}
 
 
 def maze(rows: int, columns: int, thin: float, seed: int) -> Environment:
@@ -109,7 +121,7 @@ def maze(rows: int, columns: int, thin: float, seed: int) -> Environment:
             spare -= 1
     call = "maze", str(rows), str(columns), "--thin", plain(thin)
     name = f"maze-{rows}x{columns}-thin{100 * thin:g}"
-    return Environment(name, call, world(4, links), (rows, columns))
+    return Environment(name, call, world(4, links), (rows, columns), (), _squares(links))
 
 
 def _is_bridge(graph: "nx.MultiGraph[Any]", a: Gateway, b: Gateway) -> bool:
@@ -131,8 +143,18 @@ def lattice(kind: str, rows: int, columns: int) -> Environment:
     def bearing(here: Place, there: Place) -> float:
         return flat_bearing(positions[here], positions[there])
 
+    def move(here: Place, there: Place) -> Move:
+        (x, y), (to_x, to_y) = positions[here], positions[there]
+        return UNIT * (to_x - x), UNIT * (to_y - y)
+
     call = kind, str(rows), str(columns)
-    return Environment(f"{kind}-{rows}x{columns}", call, by_bearing(ways, bearing, 6, 30))
+    made = by_bearing(ways, bearing, 6, 30)
+    return Environment(f"{kind}-{rows}x{columns}", call, made, None, (), moves_of(made, move))
+
+
+def moves_of(made: TopologicalMap, move: Callable[[Place, Place], Move]) -> dict[Gateway, Move]:
+    """How far each gateway's way leads, where that is told by the places at its ends."""
+    return {out: move(out[0], end[0]) for out, end in made.links.items()}
 
 
 def flat_bearing(here: tuple[float, float], there: tuple[float, float]) -> float:

@@ -6,15 +6,18 @@ The same record gives the same bytes.
 import re
 import shlex
 import zlib
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 from topomap.model.experience import DState, Experience, observe
-from topomap.model.topology import Place, label
+from topomap.model.topology import Gateway, Place, label
 from topomap.runtime.errors import InputError
 from topomap.worlds.environment import Environment, plain
 from topomap.worlds.route import checked, letters, snake, walk
+from topomap.worlds.senses import Senses, demand_flat
 from topomap.worlds.tours import tour
+
+NOTHING = Senses()
 
 
 @dataclass(frozen=True)
@@ -43,13 +46,15 @@ def instance(
     signs: float = 0.0,
     seed: int | None = None,
     name: str | None = None,
+    senses: Senses = NOTHING,
 ) -> Instance:
     """Explore an environment.
 
     ``route`` is ``snake``, ``walk``, ``tour``, or a list of directions; ``steps`` cuts
     it; ``start`` names the first place (default: the smallest); ``facing`` is the slot
     of the gateway stood at first (default: the one first left by); ``signs`` is the
-    share of places that carry a sign. Raises InputError on what cannot be walked.
+    share of places that carry a sign; ``senses`` tells what is measured besides views. Raises
+    InputError on what cannot be walked, or measured.
     """
     if signs:
         environment = environment.signed(signs, seed or 0)
@@ -83,6 +88,8 @@ def instance(
     if signs:
         call += ["--signs", plain(signs)]
         parts += [f"signs{100 * signs:g}"]
+    call += senses.call()
+    parts += senses.parts()
     if seed is not None:
         call += ["--seed", str(seed)]
         parts += [f"seed{seed}"]
@@ -104,11 +111,33 @@ def instance(
             f"signs: {100 * signs:g} % of the places "
             f"({len(environment.map.landmarks)} of {len(world.stars)}), seed {seed or 0}"
         )
+    header += senses.notes()
     fault = world.path_axiom_fault()
     if fault:
         header.append(f"the environment's own map breaks the path axiom: {fault}")
     header.append("made by: " + shlex.join(call))
-    return Instance(title, tuple(header), *observe(world, (first, facing), taken))
+    seen, truth = measured(environment, (first, facing), taken, senses)
+    return Instance(title, tuple(header), seen, truth)
+
+
+def measured(
+    environment: Environment,
+    start: Gateway,
+    route: Sequence[int],
+    senses: Senses,
+    drops: Iterable[int] = (),
+) -> tuple[Experience, tuple[DState, ...]]:
+    """What is seen and measured along a route, and the true hypothesis. Raises InputError if the
+    world is not flat, and odometry is asked for."""
+    seen, truth = observe(environment.map, start, route, drops)
+    if not senses:
+        return seen, truth
+    if senses.odometry is not None:
+        demand_flat(environment.name, environment.map, environment.moves)
+    dstates = [start]
+    for slot in route:
+        dstates.append(environment.map.links[dstates[-1][0], slot])
+    return senses.of(seen, dstates, route, environment.moves), truth
 
 
 def _part(route: str, taken: int, steps: int | None) -> str:

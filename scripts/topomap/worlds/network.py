@@ -22,9 +22,17 @@ from topomap.runtime import nx
 from topomap.runtime.errors import InputError
 from topomap.runtime.files import read_bytes
 from topomap.runtime.limits import LARGEST
-from topomap.worlds.environment import Environment, by_bearing, flat_bearing, plain
+from topomap.worlds.environment import (
+    Environment,
+    by_bearing,
+    flat_bearing,
+    moves_of,
+    plain,
+)
+from topomap.worlds.senses import Move
 
 Point = tuple[float, float]
+DEGREE = 111_195  # metres of a degree of latitude, on a sphere of 6,371 km
 
 
 def load(file: str | Path, slots: int, north: float) -> tuple[Environment, list[str]]:
@@ -64,6 +72,16 @@ def load(file: str | Path, slots: int, north: float) -> tuple[Environment, list[
             to_x = x + ((to_x - x + 180) % 360 - 180) * math.cos(math.radians((y + to_y) / 2))
         return flat_bearing((x, y), (to_x, to_y))
 
+    def move(here: Place, there: Place) -> Move:
+        (x, y), (to_x, to_y) = points[here], points[there]
+        if not unprojected:
+            return to_x - x, to_y - y
+        # In one frame for all places, as odometry is: a degree of longitude is as long as where the
+        # first place is.
+        east = ((to_x - x + 180) % 360 - 180) * math.cos(math.radians(equal))
+        return DEGREE * east, DEGREE * (to_y - y)
+
+    equal = next(iter(points.values()))[1]
     try:
         world = by_bearing(ways, bearing, slots, north)
     except InputError as error:
@@ -76,7 +94,7 @@ def load(file: str | Path, slots: int, north: float) -> tuple[Environment, list[
         f"slot 0 at {plain(north)} degrees clockwise of north",
         *_provenance(graph),
     )
-    return Environment(path.stem, call, world, notes=notes), told
+    return Environment(path.stem, call, world, None, notes, moves_of(world, move)), told
 
 
 def read_graphml(file: str | Path, content: bytes, node_type: type = str) -> "nx.Graph[Any]":
