@@ -15,8 +15,9 @@ from topomap.runtime.errors import InputError
 from topomap.runtime.watch import Watch
 from topomap.search import traversal
 from topomap.solver import solving
-from topomap.worlds.environment import grid, world
+from topomap.worlds.environment import Environment, grid, world
 from topomap.worlds.family import expand
+from topomap.worlds.senses import Senses
 
 ALL = Query(frozenset())
 
@@ -25,6 +26,7 @@ MOST = 16
 
 
 def explored(made, start, query=ALL, most=MOST, marker=False):
+    made = Environment("test", (), made)
     return robot.simulate(made, start, query, Watch(), most, marker)
 
 
@@ -102,7 +104,7 @@ def test_a_robot_knows_nothing_but_what_it_saw():
 
 def test_a_robot_goes_where_it_turns():
     made = grid(2, 2).map
-    robot = Robot(made, ((0, 0), 1))
+    robot = Robot(Environment("test", (), made), ((0, 0), 1), Senses())
     for turn in (0, 3, 3, 3):
         robot.step(turn)
     assert robot.dstate == ((0, 0), 2)

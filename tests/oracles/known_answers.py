@@ -782,7 +782,8 @@ def numbered(draw: random.Random, one: Standing, out: bool) -> Standing:
     world = replace(one.world, stars=stars, links=links, landmarks=signs)
     dstate = number[one.dstate[0]], one.dstate[1]
     elsewhere = [place for place in stars if place != dstate[0]]
-    return Standing(world, dstate, draw.choice(elsewhere) if out and elsewhere else None)
+    north = {number[place]: slot for place, slot in one.compass.items()}
+    return Standing(world, dstate, draw.choice(elsewhere) if out and elsewhere else None, north)
 
 
 def bare(among: list[Standing]) -> str:
@@ -795,6 +796,7 @@ def bare(among: list[Standing]) -> str:
             facts += f"map_link({number},{place},{slot},{other},{at}). "
         for place, terms in one.world.landmarks.items():
             facts += "".join(f"map_sign({number},{place},{term}). " for term in terms)
+        facts += "".join(f"map_compass({number},{p},{s}). " for p, s in one.compass.items())
         facts += "map_stands({},{},{}). ".format(number, *one.dstate)
         facts += f"map_marker({number},{one.marker}). " if one.marker is not None else ""
     return facts

@@ -40,7 +40,19 @@ def scattered(draw, most=4, rate=0.9):
             kept = [edge for edge in made.edges() if draw.random() < draw.choice([1, 1, rate])]
             links = dict(kept) | {b: a for a, b in kept}
             among.append(Standing(replace(made, links=links), draw.choice(ends)))
+        if draw.random() < 0.2:
+            among = [turned(draw, one) for one in among]
         return made, among
+
+
+def turned(draw, one):
+    """The same with a compass, which points to slot 0 where the agent stands, and anywhere else at
+    other places."""
+    place, slot = one.dstate
+    north = {
+        other: draw.choice([0, 0, draw.randrange(one.world.slots)]) for other in one.world.stars
+    }
+    return replace(one, compass=north | {place: -slot % one.world.slots})
 
 
 def asked(draw, number, most):
@@ -61,7 +73,8 @@ def sight(one, here):
     (place, slot), lies = here
     world = one.world
     star = tuple(sorted((s - slot) % world.slots for s in world.stars[place]))
-    return star, tuple(sorted(world.landmarks.get(place, ()))), lies == place
+    north = (slot + one.compass[place]) % world.slots if place in one.compass else None
+    return star, tuple(sorted(world.landmarks.get(place, ()))), lies == place, north
 
 
 def gone(one, here, turn):

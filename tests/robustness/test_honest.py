@@ -373,8 +373,7 @@ def test_a_robot_that_may_not_go_on_does_not_know_the_truth(inside):
 
 def test_a_robot_with_more_best_maps_than_it_keeps_does_not_know_the_truth(monkeypatch):
     monkeypatch.setattr(robot, "MOST_MAPS", 1)
-    world = grid(3, 3).map
-    outcome = robot.simulate(world, ((0, 0), 1), Query(), Watch(), 5)
+    outcome = robot.simulate(grid(3, 3), ((0, 0), 1), Query(), Watch(), 5)
     assert len(outcome.maps) == 1
     assert outcome.truth is not False
 

@@ -17,7 +17,7 @@ Pair = tuple[DState, DState, Where]
 class Chart:
     """A map as plain data: the gateways and landmarks of each place, the gateway at the other
     end of each link, where the agent stands, and the place where the marker lies, if it is
-    out."""
+    out; with a compass, the compass slot to which slot 0 of each place points."""
 
     slots: int
     gateways: Mapping[Place, Collection[int]]
@@ -25,6 +25,7 @@ class Chart:
     dstate: DState
     landmarks: Mapping[Place, Collection[str]] = field(default_factory=dict)
     marker: Place | None = None
+    compass: Mapping[Place, int] = field(default_factory=dict)
 
 
 def faults(one: Chart, other: Chart, related: Collection[Pair], marker: bool) -> Iterator[str]:
@@ -66,11 +67,13 @@ def pending(one: Chart, other: Chart, related: Collection[Pair]) -> tuple[set[DS
     return found
 
 
-def _look(chart: Chart, dstate: DState, marker: Place | None) -> tuple[set[int], set[str], bool]:
-    """What is seen at a dstate: gateways clockwise of it, landmarks, and whether the marker."""
+def _look(chart: Chart, dstate: DState, marker: Place | None) -> tuple[Any, ...]:
+    """What is seen at a dstate: gateways clockwise of it, landmarks, whether the marker, and where
+    it points by the compass."""
     place, slot = dstate
     gateways = {(other - slot) % chart.slots for other in chart.gateways[place]}
-    return gateways, set(chart.landmarks.get(place, ())), marker == place
+    north = (slot + chart.compass[place]) % chart.slots if place in chart.compass else None
+    return gateways, set(chart.landmarks.get(place, ())), marker == place, north
 
 
 def _ways(one: Chart, other: Chart, pair: Pair) -> Iterator[tuple[DState, DState]]:

@@ -90,6 +90,7 @@ class Experience:
         apart: Iterable[Visits] = (),
         drift: int = DRIFT,
         stretch: int = STRETCH,
+        assumed: Iterable[tuple[str, bool]] = (),
     ):
         """What was seen and done. Whether it can be so is told when it is first used: by
         InputError, with the step, as for a file.
@@ -107,6 +108,7 @@ class Experience:
             lengths: how long each step was, in whole units, or None; by default none is told.
             same, apart: pairs of steps after which the agent was at one place, or at two.
             drift, stretch: how far shifts and lengths may be wrong, in percent.
+            assumed: what ``topomap.assume`` has added.
 
         Raises:
             ValueError: there is not one view more than turns, or not as many sets of landmarks;
@@ -140,7 +142,7 @@ class Experience:
         percents = whole("drift", drift, 0), whole("stretch", stretch, 0)
         values = (
             *(integer("slots", slots), seen, done, signs, *marks),
-            *(north, moved, measured, *pairs, *percents, frozenset[tuple[str, bool]]()),
+            *(north, moved, measured, *pairs, *percents, frozenset(assumed)),
         )
         for one, value in zip(fields(self), values, strict=True):
             object.__setattr__(self, one.name, value)

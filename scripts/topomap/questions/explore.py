@@ -122,7 +122,7 @@ def plan(
     What was found is kept when the time is over; ``fault`` says so."""
     if any(standing.world.slots != slots for standing in among):
         raise ValueError("maps of other slots")
-    if len({sight(one.world, one.dstate, one.marker) for one in among}) != 1:
+    if len({sight(one, one.dstate, one.marker) for one in among}) != 1:
         raise ValueError("no maps, or what is seen now differs")
     planner = _Planner(slots, among, watch, marker, steps)
     with Attempt() as attempt:

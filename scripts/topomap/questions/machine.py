@@ -27,7 +27,7 @@ class Machine:
         start = standing.dstate, standing.marker, carried
         numbers = {start: len(self.looks)}
         for dstate, lies, carries in (waiting := [start]):
-            look = sight(world, dstate, lies)
+            look = sight(standing, dstate, lies)
             self.looks.append(self.seen.setdefault(look, len(self.seen)))
             moves: dict[Action, int | None] = {}
             for turn in sorted(look.view):

@@ -86,7 +86,8 @@ class Planned:
 def _seen(one: Prediction | None) -> dict[str, Any] | None:
     if one is None:
         return None
-    return {"view": sorted(one.view), "landmarks": sorted(one.landmarks), "marker": one.marker}
+    told = {"view": sorted(one.view), "landmarks": sorted(one.landmarks), "marker": one.marker}
+    return told if one.compass is None else {**told, "compass": one.compass}
 
 
 def _walk(experience: Experience, made: Plan) -> Iterator[str]:
@@ -121,12 +122,14 @@ def _turn(experience: Experience, step: int, turn: int) -> str:
 
 
 def _cell(one: Prediction | None) -> str:
-    """What is seen: gateways clockwise of the one arrived at, landmarks, the marker."""
+    """What is seen: gateways clockwise of the one arrived at, landmarks, the marker, and where that
+    gateway points by the compass."""
     if one is None:
         return "-"
     seen = " ".join(map(str, sorted(one.view)))
     signs = [words.signs(one.landmarks)] if one.landmarks else []
-    return ", ".join([words.short(seen, LONGEST), *signs, *["marker"] * one.marker])
+    north = [] if one.compass is None else [f"compass {one.compass}"]
+    return ", ".join([words.short(seen, LONGEST), *signs, *["marker"] * one.marker, *north])
 
 
 def _verdict(kind: str, many: int, made: Plan, every: bool) -> str:

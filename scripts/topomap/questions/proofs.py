@@ -78,7 +78,11 @@ def check_proofs(path: str, experience: Experience) -> Checked:
         at = beginning(f"{path}: map {number}", entry["at"], experience, experience)
         grown = check.Grown(experience, dict(enumerate(at)), experience.steps)
         landmarks = {place: experience.landmarks[place] for place in grown.stars}
-        rest = landmarks, at[put][0] if lying else None
+        lies = at[put][0] if lying else None
+        # A compass counts if each visit has it.
+        slots = [slot for slot in experience.compass if slot is not None]
+        north = {place: slots[place] for place, _ in at} if len(slots) == len(at) else {}
+        rest = landmarks, lies, north
         charts.append(Chart(experience.slots, grown.stars, grown.links, at[-1], *rest))
     wrong = []
     for number, proof in enumerate(proofs, 1):

@@ -270,7 +270,9 @@ class Robot:
         """What it sees where it is."""
         world, place = self.world, self.dstate[0]
         marker = len(self.route) in self.experience().markers
-        return Prediction(world.view(self.dstate), world.landmarks.get(place, frozenset()), marker)
+        points = self.dstate[1] if self.senses.compass else None
+        landmarks = world.landmarks.get(place, frozenset())
+        return Prediction(world.view(self.dstate), landmarks, marker, points)
 
     def mapped(self, maps: Sequence[Found]) -> bool:
         """Whether one of the maps is the whole world, and the robot there where it thinks."""

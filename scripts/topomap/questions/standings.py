@@ -1,7 +1,7 @@
 """Maps in which an agent stands somewhere: what each predicts that will be seen."""
 
-from collections.abc import Hashable, Iterable, Sequence
-from dataclasses import dataclass
+from collections.abc import Hashable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
 
 from topomap.documents.bisimulation import Chart
 from topomap.model.experience import DState, Experience
@@ -11,48 +11,63 @@ from topomap.model.topology import Gateway, Place, TopologicalMap
 @dataclass(frozen=True)
 class Standing:
     """A map, the dstate where the agent stands in it, and the place where the marker lies, if
-    it is out."""
+    it is out. ``compass``, if there is one, tells of each place the compass slot of its slot 0."""
 
     world: TopologicalMap
     dstate: Gateway
     marker: Place | None = None
+    compass: Mapping[Place, int] = field(default_factory=dict)
 
     def chart(self) -> Chart:
         """The same as plain data, for the checker."""
         world = self.world
-        rest = world.landmarks, self.marker
+        rest = world.landmarks, self.marker, self.compass
         return Chart(world.slots, world.stars, world.links, self.dstate, *rest)
 
 
 def standing(experience: Experience, at: tuple[DState, ...]) -> Standing:
     """The map of a hypothesis, and where the agent stands in it; the marker lies where it was
-    put down last, if it was not taken up since."""
+    put down last, if it was not taken up since. A compass counts if each visit has it."""
     down = None
     for step in range(experience.steps + 1):
         down = None if step in experience.picks else down
         down = step if step in experience.drops else down
-    return Standing(experience.map_of(at), at[-1], None if down is None else at[down][0])
+    marker = None if down is None else at[down][0]
+    return Standing(experience.map_of(at), at[-1], marker, orientation(experience, at))
+
+
+def orientation(experience: Experience, at: Sequence[DState]) -> dict[Place, int]:
+    """The compass slot of slot 0 of each place; empty if not each visit has a compass."""
+    slots = [slot for slot in experience.compass[: len(at)] if slot is not None]
+    if len(slots) < len(at):
+        return {}
+    return {place: slots[place] for place, _ in at}
 
 
 @dataclass(frozen=True)
 class Prediction:
     """What a map says will be seen: gateways clockwise of the one arrived at, landmarks, and
-    whether the marker."""
+    whether the marker; and the compass slot of the one arrived at, if there is a compass."""
 
     view: frozenset[int]
     landmarks: frozenset[str] = frozenset()
     marker: bool = False
+    compass: int | None = None
 
     @property
-    def signs(self) -> tuple[tuple[str, ...], bool]:
+    def signs(self) -> tuple[tuple[str, ...], bool, int | None]:
         """What there is but gateways."""
-        return tuple(sorted(self.landmarks)), self.marker
+        return tuple(sorted(self.landmarks)), self.marker, self.compass
 
 
-def sight(world: TopologicalMap, dstate: Gateway, marker: Place | None) -> Prediction:
-    place = dstate[0]
+def sight(standing: Standing, dstate: Gateway, marker: Place | None) -> Prediction:
+    """What is seen at a dstate of a map, if the marker lies there."""
+    world, (place, slot) = standing.world, dstate
     landmarks = world.landmarks.get(place, frozenset())
-    return Prediction(world.view(dstate), landmarks, marker is not None and marker == place)
+    north = standing.compass.get(place)
+    points = None if north is None else (slot + north) % world.slots
+    here = marker is not None and marker == place
+    return Prediction(world.view(dstate), landmarks, here, points)
 
 
 def predict(
@@ -69,7 +84,7 @@ def predict(
         if out not in world.links:
             break
         dstate = world.links[out]
-        found.append(sight(world, dstate, marker))
+        found.append(sight(standing, dstate, marker))
     return (*found, *[None] * (len(turns) - len(found)))
 
 
@@ -97,7 +112,7 @@ def shape(standing: Standing) -> Hashable:
                 waiting.append(end[0])
             number, slot = first[end[0]]
             ends.append((turn, number, (end[1] - slot) % slots))
-        form.append((tuple(ends), *sight(world, (place, base), standing.marker).signs))
+        form.append((tuple(ends), *sight(standing, (place, base), standing.marker).signs))
     return slots, tuple(form)
 
 
@@ -123,6 +138,10 @@ def facts(maps: Iterable[tuple[int, Standing]]) -> str:
         ]
         place, slot = standing.dstate
         lines.append(f"map_stands({number},{index[place]},{slot}).")
+        lines += [
+            f"map_compass({number},{index[place]},{slot})."
+            for place, slot in standing.compass.items()
+        ]
         if standing.marker is not None:
             lines.append(f"map_marker({number},{index[standing.marker]}).")
     return "\n".join(lines) + "\n"
