@@ -50,10 +50,12 @@ def report_under(
     most: int,
     seconds: float,
     maps_from: str | None = None,
+    known: Sequence[str] = (),
 ) -> Page:
     """Look at explorations, each with its name, under the watch of a command, for so many seconds
     in all. At most so many (``most``) of the best maps are drawn of each; or of the maps in a
-    file, ``maps_from``, which goes with one exploration. Raises InputError, one line."""
+    file, ``maps_from``, which goes with one exploration; ``known`` holds the options by which more
+    is known of these than their files tell. Raises InputError, one line."""
     given = None if maps_from is None else given_maps(maps_from, *seen[0], query)
     end = time.monotonic() + seconds
     chapters = []
@@ -63,5 +65,5 @@ def report_under(
         chapter = Chapter(name, cut, replace(query, horizon=None), most, watch, given)
         chapter.look(max(0.0, share))
         chapters.append(chapter)
-    asked = Asked([name for name, _ in seen], query, most, seconds, maps_from)
+    asked = Asked([name for name, _ in seen], query, most, seconds, maps_from, known)
     return Page(asked, chapters)

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 # Where not the maps of the whole are asked for, but those of each beginning, or of a file.
-ONLY_PAIRS = ("branching", "check", "count", "search")
+ONLY_PAIRS = ("branching", "check", "count", "report", "search")
 
 
 def experience_of(args: argparse.Namespace, path: str, noisy: bool = False) -> "Experience":
@@ -24,6 +24,17 @@ def experience_of(args: argparse.Namespace, path: str, noisy: bool = False) -> "
     from topomap.model import facts
 
     return known(args, facts.read(path, noisy, args.drift, args.stretch))
+
+
+def known_options(args: argparse.Namespace) -> list[str]:
+    """The options of a call that tell what is known besides the facts of instances."""
+    told = [("--assume", text) for text in args.assume or ()]
+    told += [
+        (f"--{name}", str(value))
+        for name in ("drift", "stretch")
+        if (value := getattr(args, name)) is not None
+    ]
+    return [word for pair in told for word in pair]
 
 
 def parsed(args: argparse.Namespace, text: str, source: str) -> "Experience":

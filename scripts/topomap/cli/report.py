@@ -4,7 +4,7 @@ import argparse
 from typing import Any
 
 from topomap.cli.arguments import add_asked, add_known, command, number
-from topomap.cli.calls import asked_query, experience_of
+from topomap.cli.calls import asked_query, experience_of, known_options
 from topomap.model.vocabulary import PRUNING
 from topomap.runtime.errors import InputError, say
 from topomap.runtime.status import exit_status
@@ -56,7 +56,8 @@ def run(args: argparse.Namespace) -> int:
         raise InputError("topomap report: --maps-from goes with one instance")
     query = asked_query(args, PRUNING)
     with output(args.output) as out, heeding(args.timeout) as watch:
-        made = report_under(watch, seen, query, args.maps, args.timeout, args.maps_from)
+        told = known_options(args)
+        made = report_under(watch, seen, query, args.maps, args.timeout, args.maps_from, told)
         out.write(made.html())
     for name, fault in made.faults:
         say(f"{name}: partial: {fault}")

@@ -16,6 +16,11 @@ RULES = {
     "view": "another view is seen there",
     "landmark": "other landmarks are seen there",
     "marker": "the marker is seen elsewhere, or lies there and is not seen",
+    "compass": "the compass points elsewhere there",
+    "odometry": "it is too far away by its odometry",
+    "apart": "it is known to be another place",
+    "same": "it is known to be the place of an earlier step",
+    "length": "the way was of another length",
     "twice": "a place would be on a path twice",
     "circular": "a path would be circular",
     "planarity": "the gateways are not on one face",
@@ -83,6 +88,26 @@ def marker(experience: "Experience", step: int) -> str:
         if step in steps
     ]
     return ", ".join(told)
+
+
+def known(experience: "Experience", step: int) -> str:
+    """What is known of a step besides what is seen."""
+    told = []
+    if experience.compass and (slot := experience.compass[step]) is not None:
+        told.append(f"compass {slot}")
+    if step and experience.shifts and (shift := experience.shifts[step - 1]) is not None:
+        told.append(f"shift {shift[0]}, {shift[1]}")
+    if step and experience.lengths and (length := experience.lengths[step - 1]) is not None:
+        told.append(f"length {length}")
+    for name, pairs in (
+        ("same place as", experience.same),
+        ("another place than", experience.apart),
+    ):
+        steps = sorted(earlier for earlier, later in pairs if later == step)
+        told += (
+            [f"{name} after {plural(len(steps), 'step')} {listed(steps, MOST)}"] if steps else []
+        )
+    return "; ".join(told)
 
 
 def markers(experience: "Experience", at: Sequence[Gateway]) -> str:

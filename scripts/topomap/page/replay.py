@@ -107,6 +107,11 @@ def in_force(query: Query, experience: Experience) -> list[str]:
         "bound": query.places is None,
         "landmark": not any(experience.landmarks),
         "marker": not experience.drops,
+        "compass": not experience.compass,
+        "odometry": not experience.shifts,
+        "length": not experience.lengths,
+        "same": not experience.same,
+        "apart": not experience.apart,
     }
     return [rule for rule in RULES if not never.get(rule)]
 

@@ -26,7 +26,10 @@ from topomap.page.chapter import Chapter
 from topomap.page.replay import MOST, SHOWN, fate, in_force
 from topomap.runtime.errors import printable
 from topomap.runtime.version import VERSION
+from topomap.search.evidence import RULES as KNOWN
+from topomap.search.evidence import Evidence
 
+ENDERS = ("view", "landmark", "marker", *KNOWN, "bound")  # rules that can end a hypothesis
 FOLDER = Path(__file__).parent
 LARGER = 1.7  # than its units are the picture of a best map, where there is room
 ROOM = 2_000_000  # letters that small pictures of one exploration take, about
@@ -36,13 +39,15 @@ ROOM = 2_000_000  # letters that small pictures of one exploration take, about
 class Asked:
     """What a page was asked for: the instances, the parts and limits of their maps, how many of
     the best ones are drawn at most, within how many seconds, and the file of the maps that are
-    told of instead, if there is one. As options of the command they are told on the page."""
+    told of instead, if there is one; and what is ``known`` besides the instances, as options. All
+    this is told on the page as options of the command."""
 
     instances: Sequence[str]
     query: Query
     most: int
     timeout: float
     maps_from: str | None = None
+    known: Sequence[str] = ()
 
     def options(self, without: str = "") -> list[str]:
         """The parts and limits, as options."""
@@ -50,7 +55,7 @@ class Asked:
         flags = [f"--{part}" for part in PRUNING if part in asked]
         for name, value in (("bound", self.query.places), ("horizon", self.query.horizon)):
             flags += [] if value is None else [f"--{name}", str(value)]
-        return flags
+        return [*flags, *self.known]
 
     def call(self) -> str:
         """The call that makes the page."""
@@ -138,6 +143,7 @@ def _about(asked: Asked, number: int, about: Chapter) -> dict[str, Any]:
         "slots": seen.slots,
         "signs": len(frozenset().union(*seen.landmarks)),
         "marked": bool(seen.drops),
+        "known": bool(Evidence(seen)),
         "faults": about.faults,
         "asked": [PARTS[part] for part in sorted(about.query.parts)]
         + ([f"at most {words.number(about.query.places, 'place')}"] if about.query.places else []),
@@ -151,7 +157,7 @@ def _about(asked: Asked, number: int, about: Chapter) -> dict[str, Any]:
             for found, counted in zip(about.steps, about.counted, strict=True)
         ),
         "rules": {rule: words.RULES[rule] for rule in rules},
-        "enders": [rule for rule in rules if rule in ("view", "landmark", "marker", "bound")],
+        "enders": [rule for rule in rules if rule in ENDERS],
         "refused": [
             (step, about.steps[step - 1].alive, about.steps[step]) for step in range(1, last + 1)
         ],
@@ -184,6 +190,7 @@ def _log_line(seen: Experience, step: int) -> dict[str, Any]:
         "glyph": Markup(svg.view(view, seen.slots, ways)) if drawn else "",
         "landmarks": ", ".join(sorted(seen.landmarks[step])),
         "marker": words.marker(seen, step),
+        "known": words.known(seen, step),
     }
 
 
