@@ -87,6 +87,7 @@ def beyond(facts):
         "odometry": "shift",
         "lengths": "length",
         "closures": "same|apart",
+        "logs": "start|look",
     }
     told = {file for file, names in files.items() if re.search(rf"\b(?:{names})\(", facts)}
     return [f"beyond/{file}" for file in files if file in told]
@@ -129,14 +130,20 @@ def costs(parts, facts, *arguments, encoding="work"):
 
 def plain(experience):
     """An experience as the oracle wants it."""
+    turns = [
+        turn if turn is not None else "start" if step in experience.starts else "look"
+        for step, turn in enumerate(experience.turns, 1)
+    ]
+    done = {"drop": "put", "pick": "took", "marker": "saw"}
     return (
         experience.slots,
         experience.views,
-        (None, *experience.turns),
+        (None, *turns),
         experience.landmarks,
         {(step, "put") for step in experience.drops}
         | {(step, "took") for step in experience.picks}
-        | {(step, "saw") for step in experience.markers},
+        | {(step, "saw") for step in experience.markers}
+        | {(step, done[kind], name) for kind, step, name in experience.things},
         known(experience),
     )
 

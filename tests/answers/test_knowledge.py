@@ -3,14 +3,15 @@ answer: the encodings, the statement, step by step, the phases, the search with 
 ahead, brute force, and both checkers."""
 
 import random
+from collections import Counter
+from dataclasses import replace
 
 import clingo
 import pytest
-from conftest import ENCODINGS, TRIED, Truth, answers
+from conftest import ENCODINGS, PARTS, TRIED, Truth, answers, forms
 from oracles.brute_force import certain
-from oracles.worlds import informed, told
+from oracles.worlds import informed, logs, told
 from topomap.documents.check import by_definition, by_rules
-from topomap.model.experience import Experience
 from topomap.model.query import Query
 from topomap.runtime.watch import Watch
 from topomap.search.descent import Descent
@@ -34,10 +35,15 @@ def ahead(experience, *parts):
 def agree(experience):
     truth, constants = Truth(experience), experience.constants()
     facts = experience.facts()
-    for form in ("work", "paper"):
-        assert answers((), facts, *constants, encoding=form) == {*truth.final}, (form, facts)
-        planar = answers(("planar",), facts, *constants, encoding=form)
-        assert planar == truth.having("planar"), (form, facts)
+    for parts in ((), *((part,) for part in PARTS)):
+        for form in forms(*parts):
+            found = answers(parts, facts, *constants, encoding=form)
+            assert found == truth.having(*parts), (form, parts, facts)
+    if truth.final:
+        fewest = answers(("minimal",), facts, *constants)
+        assert fewest == truth.least(lambda h: h.cost(), truth.final), facts
+        least = answers(("genus",), facts, *constants)
+        assert least == truth.least(lambda h: (h.genus(),), truth.final), facts
     assert searched(experience) == {*truth.final}, facts
     for parts in ((), ("closed",), ("planar", "closed"), ("boundary", "closed")):
         assert ahead(experience, *parts) == truth.having(*parts), (parts, facts)
@@ -49,11 +55,13 @@ def agree(experience):
 def checked(experience, truth):
     """Both checkers pass the hypotheses, and say the same of what is one without that knowledge;
     a hypothesis of this is one with that knowledge if and only if nothing is violated."""
-    bare = Experience(experience.slots, experience.views, experience.turns, experience.landmarks)
+    bare = replace(experience, compass=(), shifts=(), lengths=(), same=(), apart=(), things=())
     for at in sorted(Truth(bare).final)[:30]:
         told = [(step, place, slot) for step, (place, slot) in enumerate(at)]
+        for demands in ((), ("planar", "closed", "boundary")):
+            found = by_rules(experience, told, demands)
+            assert found == by_definition(experience, told, demands), (at, experience.facts())
         found = by_rules(experience, told)
-        assert found == by_definition(experience, told), (at, experience.facts())
         assert (not found) == (at in truth.final), (at, found, experience.facts())
         for rule, _ in found:
             TRIED[f"maps that violate {rule}"] += 1
@@ -63,9 +71,9 @@ def checked(experience, truth):
 def test_step_by_step(block):
     """After each step the hypotheses are those of the beginning so far; what is taken back leaves
     no trace."""
-    for number in range(25):
+    for number in range(30):
         draw = random.Random(f"informed online {block}/{number}")
-        seen = informed(draw, 7)
+        seen = informed(draw, 7) if number % 2 else logs(draw, 6)
         levels = Truth(seen).levels
         follower = OnlineSolver(seen.slots, told(seen, 0), drift=seen.drift, stretch=seen.stretch)
         step = 0
@@ -109,8 +117,23 @@ def test_random_worlds(block):
     assert sum(len(maps) > 1 for maps in found) > 5
 
 
+@pytest.mark.parametrize("block", range(4))
+def test_several_logs(block):
+    """And second looks, and markers with names."""
+    kinds = Counter()
+    for number in range(60):
+        seen = logs(random.Random(f"logs {block}/{number}"), 7)
+        truth = agree(seen)
+        parts = {len(h.parts()) for h in truth.final.values()}
+        kinds.update({"starts": bool(seen.starts), "looks": bool(seen.looks)})
+        kinds.update({"things": bool(seen.things), "components": max(parts, default=1) > 1})
+        kinds["joined"] += bool(seen.starts) and 1 in parts
+    assert min(kinds.values()) > 5, kinds
+
+
 @pytest.mark.long
 @pytest.mark.parametrize("block", range(10))
 def test_many_random_worlds(block):
     for number in range(300):
         agree(informed(random.Random(f"many informed {block}/{number}"), 10))
+        agree(logs(random.Random(f"many logs {block}/{number}"), 8))

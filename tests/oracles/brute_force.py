@@ -7,13 +7,17 @@ slow on purpose, and meant for small experiences.
 An experience is ``(slots, views, turns, landmarks, marker, known)``: ``views[t]`` the set of slots
 seen after step t, ``turns[t]`` the turn of step t (``turns[0]`` is unused),
 ``landmarks[t]`` the set of landmarks recognised after step t; ``marker`` is what was done
-with the marker and when, as ``(t, "put")``, ``(t, "took")``, ``(t, "saw")``; ``known`` is a list of
+with the marker and when, as ``(t, "put")``, ``(t, "took")``, ``(t, "saw")``, or with the name of
+another one, ``(t, "put", name)``; ``turns[t]`` is "start" or "look" of a step that is no travel;
+``known`` is a list of
 what is known besides views: ``("compass", t, slot)``, ``("shift", t, x, y)``, ``("length", t, d)``,
 ``("same", t, u)``, ``("apart", t, u)``, ``("drift", percent)``, ``("stretch", percent)``. A
 hypothesis is the tuple of its ``(place, gateway)`` after each step, as ``at/3`` gives them.
 """
 
 from itertools import combinations
+
+RESTS = ("start", "look")
 
 
 class Hypothesis:
@@ -25,6 +29,8 @@ class Hypothesis:
         self.stars = {p: frozenset(views[p]) for p, _ in at}
         self.link = {}
         for t in range(1, len(at)):
+            if self.turns[t] in RESTS:
+                continue
             here, there = self.leaves(t), at[t]
             self.link[here], self.link[there] = there, here
 
@@ -87,8 +93,23 @@ class Hypothesis:
                 faces.append(face)
         return faces or [[]]
 
+    def parts(self):
+        """The components of the map, each as the set of its places."""
+        parts = []
+        for place in self.stars:
+            near = {place}
+            while more := {q for (p, _), (q, _) in self.link.items() if p in near} - near:
+                near |= more
+            if near not in parts:
+                parts.append(near)
+        return parts
+
     def euler(self):
-        return len(self.stars) - len(self.link) // 2 + len(self.faces())
+        """|V| - |E| + faces of all components, less 2 for each one but the first."""
+        parts = self.parts()
+        bare = sum(len(part) == 1 and not any(p in part for p, _ in self.link) for part in parts)
+        faces = len(self.faces()) * bool(self.link) + bare
+        return len(self.stars) - len(self.link) // 2 + faces - 2 * (len(parts) - 1)
 
     def genus(self):
         return (2 - self.euler()) // 2
@@ -104,6 +125,8 @@ class Hypothesis:
                     return place, slot
             return None
 
+        if not any({g[0], h[0]} <= part for part in self.parts()):
+            return True
         if corner(g) is None or corner(h) is None:
             return True
         return any(corner(g) in face and corner(h) in face for face in self.faces())
@@ -147,25 +170,29 @@ class Hypothesis:
             steps = [
                 t
                 for t in range(1, len(self.at))
-                if (self.leaves(t)[0], self.leaves(t)[1] % (self.slots // 2)) in ends
+                if self.turns[t] not in RESTS
+                and (self.leaves(t)[0], self.leaves(t)[1] % (self.slots // 2)) in ends
             ]
             paths.add(("first", steps[0]) if steps else ("axis", *min(ends)))
         return frozenset(paths), frozenset(self.stars)
 
 
 def marked(marker, at):
-    """Whether after the last step the marker is seen if it is where the agent is, and not
+    """Whether after the last step each marker is seen if it is where the agent is, and not
     else: its whole story is told again."""
-    lies = None
-    for t, (place, _) in enumerate(at):
-        sees = (t, "saw") in marker or (t, "took") in marker
-        here = lies == place
-        ready = lies is not None
-        if (t, "took") in marker:
-            lies = None
-        if (t, "put") in marker:
-            lies = place
-    return not ready or sees == here
+    for name in {tuple(mark[2:]) for mark in marker}:
+        lies = None
+        for t, (place, _) in enumerate(at):
+            sees = (t, "saw", *name) in marker or (t, "took", *name) in marker
+            here = lies == place
+            ready = lies is not None
+            if (t, "took", *name) in marker:
+                lies = None
+            if (t, "put", *name) in marker:
+                lies = place
+        if ready and sees != here:
+            return False
+    return True
 
 
 def contradicts(experience, at):
@@ -187,7 +214,9 @@ def contradicts(experience, at):
         zeros = {(compass[v] - at[v][1]) % slots for v in (t, u) if v in compass}
         if len(zeros) > 1:
             return True
-        between = range(t + 1, u + 1)
+        between = [step for step in range(t + 1, u + 1) if turns[step] != "look" or step in shift]
+        if any(turns[step] == "start" for step in between):
+            continue
         if all(step in shift for step in between):
             moved = [sum(shift[step][axis] for step in between) for axis in (0, 1)]
             way = sum(abs(shift[step][0]) + abs(shift[step][1]) for step in between)
@@ -203,7 +232,9 @@ def contradicts(experience, at):
         return {(place, (gateway + turns[t]) % slots), at[t]}
 
     return any(
-        t in length
+        turns[t] not in RESTS
+        and turns[u] not in RESTS
+        and t in length
         and u in length
         and link(t) == link(u)
         and 100 * abs(length[t] - length[u]) > stretch * max(length[t], length[u])
@@ -220,12 +251,24 @@ def tree(experience, planar=False, bound=None):
         for at in levels[-1]:
             before = Hypothesis(experience, at)
             place, gateway = at[-1]
-            x = place, (gateway + turns[t]) % slots
 
             def fits(p, s, t=t):
                 turned = {(g - s) % slots for g in views[p]}
                 return turned == set(views[t]) and landmarks[p] == landmarks[t]
 
+            if turns[t] in RESTS:
+                arrivals = [at[-1]] if turns[t] == "look" else [*before.gateways(), (t, 0)]
+                for arrival in arrivals:
+                    child = *at, arrival
+                    after = Hypothesis(experience, child)
+                    if (arrival != (t, 0) and not fits(*arrival)) or not marked(marker, child):
+                        continue
+                    if known and contradicts(experience, child):
+                        continue
+                    if bound is None or len(after.stars) <= bound:
+                        level.append(child)
+                continue
+            x = place, (gateway + turns[t]) % slots
             if x in before.link:
                 child = *at, before.link[x]
                 fitting = fits(*before.link[x]) and marked(marker, child)

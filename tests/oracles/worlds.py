@@ -3,6 +3,7 @@ something that is easily got wrong, and random ones."""
 
 import random
 from dataclasses import replace
+from itertools import pairwise
 
 from topomap.model.experience import MARKER, Experience, Step, observe
 from topomap.model.topology import TopologicalMap
@@ -108,6 +109,80 @@ def informed(draw: random.Random, steps: int) -> Experience:
         drift=draw.choice([0, 5, 10, 30]),
         stretch=draw.choice([0, 10, 50]),
     )
+
+
+def logs(draw: random.Random, steps: int) -> Experience:
+    """Several logs of one world, with second looks, markers with names, and now and then a compass,
+    odometry and lengths."""
+    made = random_world(draw)
+    gateways = sorted(made.links)
+    where = {p: (draw.randint(-3, 3), draw.randint(-3, 3)) for p in sorted(made.stars)}
+    here = draw.choice(gateways)
+    turns, dstates, starts, looks = [], [here], [], []
+    for step in range(1, draw.randint(0, steps) + 1):
+        place, slot = here
+        kind = draw.random()
+        if kind < 0.15:
+            here = draw.choice(gateways)
+            starts.append(step)
+        elif kind < 0.25:
+            looks.append(step)
+        else:
+            ahead = (slot + made.slots // 2) % made.slots
+            if ahead not in made.stars[place] or draw.random() < 0.5:
+                ahead = draw.choice(sorted(made.stars[place]))
+            turns.append((ahead - slot) % made.slots)
+            here = made.links[place, ahead]
+        dstates.append(here)
+        turns += [None] * (kind < 0.25)
+    wished = {
+        (kind, step, name)
+        for step in range(len(dstates))
+        for name in ("coin", "rope")
+        for kind in ("drop", "pick")
+        if draw.random() < 0.3
+    }
+    things = _sound(wished, dstates)
+    travels = [turn is not None for turn in turns]
+    moved = [
+        tuple(10 * (b - a) for a, b in zip(where[one[0]], where[other[0]], strict=True))
+        for one, other in pairwise(dstates)
+    ]
+    shifts = [
+        shift if draw.random() < 0.9 and (travels[step] or draw.random() < 0.5) else None
+        for step, shift in enumerate(moved)
+    ]
+    return Experience(
+        made.slots,
+        [made.view(dstate) for dstate in dstates],
+        turns,
+        [made.landmarks.get(place, frozenset()) for place, _ in dstates],
+        starts=starts,
+        looks=looks,
+        things=things,
+        compass=[slot for _, slot in dstates] if draw.random() < 0.2 else (),
+        shifts=shifts if draw.random() < 0.3 else (),
+        lengths=[10 + step % 2 if there else None for step, there in enumerate(travels)]
+        if draw.random() < 0.2
+        else (),
+    )
+
+
+def _sound(wished: set, dstates: list) -> set:
+    """What is done with markers, of what is wished: each is put down when it is in hand, and seen,
+    or taken up, where it lies."""
+    found, lies = set(), {}
+    for step, (place, _) in enumerate(dstates):
+        for name in sorted({name for _, _, name in wished}):
+            kinds = {kind for kind, at, other in wished if (at, other) == (step, name)}
+            if lies.get(name) == place:
+                taken = "pick" in kinds
+                found.add(("pick" if taken else "marker", step, name))
+                lies[name] = None if taken else place
+            if "drop" in kinds and lies.get(name) is None:
+                found.add(("drop", step, name))
+                lies[name] = place
+    return found
 
 
 def with_marker(route: list[int]) -> list[list[int]]:
@@ -223,5 +298,7 @@ def told(experience, step):
         known["shift"] = experience.shifts[step - 1] if experience.shifts else None
         known["length"] = experience.lengths[step - 1] if experience.lengths else None
     turn = experience.turns[step - 1] if step else None
+    known |= {"start": step in experience.starts, "look": step in experience.looks}
+    known["things"] = frozenset((kind, name) for kind, at, name in experience.things if at == step)
     seen = experience.views[step], experience.landmarks[step], marks(experience, step)
     return Step(turn, *seen, **known, **pairs)

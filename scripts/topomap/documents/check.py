@@ -18,7 +18,7 @@ Violation = tuple[str, int]
 PATH_RULES = {"path_twice", "path_circular"}
 STEP_RULES = {
     *("exactly_one", "naming", "gateway", "view", "landmark", "marker", "schema"),
-    *("compass", "odometry", "length", "same", "apart"),
+    *("compass", "odometry", "length", "same", "apart", "look"),
 }
 
 
@@ -60,13 +60,18 @@ def by_definition(experience: Experience, at: At, demands: Sequence[str] = ()) -
             found.add(("view", step))
         if experience.landmarks[step] != experience.landmarks[place]:
             found.add(("landmark", step))
-    for drop in experience.drops:
-        later = sorted(step for step in experience.picks if step > drop)
-        for step in range(drop + 1, min([*later, last]) + 1):
-            if {step, drop} <= stands.keys():
-                spotted = step in experience.markers | experience.picks
-                if spotted != (stands[step][0] == stands[drop][0]):
+    for name in experience.names():
+        drops, picks, markers = experience.marks_of(name)
+        for drop in drops:
+            later = sorted(step for step in picks if step > drop)
+            for step in range(drop + 1, min([*later, last]) + 1):
+                if not {step, drop} <= stands.keys():
+                    continue
+                if (step in markers | picks) != (stands[step][0] == stands[drop][0]):
                     found.add(("marker", step))
+    for step in experience.looks:
+        if {step - 1, step} <= stands.keys() and stands[step] != stands[step - 1]:
+            found.add(("look", step))
     found |= _contradictions(experience, stands)
     ends: dict[Gateway, set[Gateway]] = {}
     for step, out, arrival in _ways(experience, stands):
@@ -99,7 +104,7 @@ def _contradictions(experience: Experience, stands: dict[int, Gateway]) -> set[V
         north = [slot for slot in slots if slot is not None]
         if len(north) == 2 and (north[1] - north[0] - turned) % experience.slots:
             found.add(("compass", other))
-        moved = [shift for shift in experience.shifts[one:other] if shift]
+        moved = [shift for shift in _shifts(experience)[one:other] if shift]
         if len(moved) == other - one:
             way = sum(abs(x) + abs(y) for x, y in moved)
             apart = max(abs(sum(shift[axis] for shift in moved)) for axis in (0, 1))
@@ -121,12 +126,23 @@ def _contradictions(experience: Experience, stands: dict[int, Gateway]) -> set[V
     return found
 
 
+def _shifts(experience: Experience) -> Sequence[tuple[int, int] | None]:
+    """How far each step moved the agent: a second look not at all, and to the start of a log it is
+    not known."""
+    shifts: list[tuple[int, int] | None] = list(experience.shifts)
+    for step in experience.looks if shifts else ():
+        shifts[step - 1] = shifts[step - 1] or (0, 0)
+    for step in experience.starts if shifts else ():
+        shifts[step - 1] = None
+    return shifts
+
+
 def _ways(
     experience: Experience, stands: dict[int, Gateway]
 ) -> Iterator[tuple[int, Gateway, Gateway]]:
     """The steps, with the gateways that they leave and arrive by."""
     for step, turn in enumerate(experience.turns, 1):
-        if step in stands and step - 1 in stands:
+        if turn is not None and step in stands and step - 1 in stands:
             place, slot = stands[step - 1]
             yield step, (place, (slot + turn) % experience.slots), stands[step]
 
@@ -232,7 +248,11 @@ class Grown:
 
     def genus(self) -> int:
         """Genus, by Euler's formula."""
-        return (2 - len(self.stars) + len(self.links) // 2 - len(self.faces())) // 2
+        graph: nx.Graph[Any] = nx.Graph([(out[0], end[0]) for out, end in self.links.items()])
+        bare = len(self.stars) - len(graph)
+        parts = bare + nx.number_connected_components(graph) if graph else bare
+        faces = bare + (len(self.faces()) if self.links else 0)
+        return (2 * parts - len(self.stars) + len(self.links) // 2 - faces) // 2
 
     def over(self, bound: int) -> bool:
         return len(self.stars) > bound

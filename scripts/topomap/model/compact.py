@@ -19,6 +19,7 @@ class Numbering:
     def __init__(self, experience: Experience):
         self.slots = slots = experience.slots
         self.turns = experience.turns
+        self.parted = experience.parted
         views = [sorted(view) for view in experience.views]
         # Of each place: its gateways, and how many axes they lie on.
         self.gateways = [
@@ -49,11 +50,13 @@ class CompactMap:
         self.link: dict[Number, Number] = {}
         link = self.link
         for step, turn in enumerate(numbering.turns[: len(at) - 1], 1):
-            out = place * slots + (slot + turn) % slots
+            before = place * slots + slot
             place, slot = at[step]
-            arrival = place * slots + slot
-            link[out] = arrival
-            link[arrival] = out
+            if turn is not None:
+                out = before - before % slots + (before % slots + turn) % slots
+                arrival = place * slots + slot
+                link[out] = arrival
+                link[arrival] = out
             if place == step:
                 self.places.append(step)
 
@@ -77,7 +80,28 @@ class CompactMap:
         """The genus by the Euler-Poincare formula; the number of faces, if it is known, need not
         be found again."""
         faces = len(self.faces()) if faces is None else faces
+        if self._all.parted:
+            return self._genus_of_parts(faces)
         return (2 - len(self.places) + len(self.link) // 2 - faces) // 2
+
+    def _genus_of_parts(self, faces: int) -> int:
+        """The same of a map that may have several components."""
+        slots = self._all.slots
+        part = {place: place for place in self.places}
+
+        def first(place: Number) -> Number:
+            while part[place] != place:
+                place = part[place]
+            return place
+
+        for out, end in self.link.items():
+            one, other = first(out // slots), first(end // slots)
+            part[max(one, other)] = min(one, other)
+        parts = sum(first(place) == place for place in self.places)
+        linked = {out // slots for out in self.link}
+        bare = len(self.places) - len(linked)
+        faces = faces + bare if self.link else bare
+        return (2 * parts - len(self.places) + len(self.link) // 2 - faces) // 2
 
     def faces(self) -> list[list[Number]]:
         """Each face as the gateways its walk leaves by, as ``TopologicalMap.faces`` has them."""

@@ -7,6 +7,7 @@ from typing import TypeVar
 from topomap.model.terms import spelt
 from topomap.model.topology import Gateway, Place, TopologicalMap
 from topomap.runtime.checks import collection, integer, shown, whole, whole_if_given
+from topomap.runtime.errors import printable
 from topomap.runtime.limits import DRIFT, STRETCH
 
 DState = tuple[int, int]
@@ -14,6 +15,7 @@ Misread = tuple[int, int | str]  # a step, and a gateway or a landmark that was 
 MOST_SLOTS = 10**6  # sums of slots then stay below it
 MARKER = ("drop", "pick", "marker")
 Shift = tuple[int, int]  # how far a step moved the agent, in one fixed frame
+Thing = tuple[str, int, str]  # one of MARKER, a step, and the name of a marker
 Visits = tuple[int, int]  # two visits, each named by its step, the earlier one first
 
 
@@ -21,9 +23,11 @@ Visits = tuple[int, int]  # two visits, each named by its step, the earlier one 
 class Step:
     """What is told of one step; while it is being told, not all is known as yet.
 
-    ``turn`` is None of step 0, where the exploration begins. ``marks`` are those of MARKER that
-    hold after it; ``same`` and ``apart`` the earlier steps after which the agent was at this place,
-    or at another one. The rest is as in ``Experience``.
+    ``turn`` is None of step 0, where the exploration begins, and of a step that is no travel: a
+    new log (``start``), or a second look (``look``). ``marks`` are those of MARKER that hold after
+    it, and ``things`` what is done with markers that have names. ``same`` and ``apart`` are the
+    earlier steps after which the agent was at this place, or at another one. The rest is as in
+    ``Experience``.
     """
 
     turn: int | None = None
@@ -35,6 +39,9 @@ class Step:
     length: int | None = None
     same: frozenset[int] = frozenset()
     apart: frozenset[int] = frozenset()
+    start: bool = False
+    look: bool = False
+    things: frozenset[tuple[str, str]] = frozenset()  # one of MARKER, and the name
 
 
 @dataclass(frozen=True, init=False)
@@ -55,11 +62,16 @@ class Experience:
     ``apart`` hold pairs of visits that are known to be of one place, or of two. Shifts may be wrong
     by ``drift`` percent of the way, and lengths by ``stretch`` percent. ``assumed`` holds what else
     is taken for granted (``topomap.assume``): the terms of statements, each with whether it holds.
+
+    Not each step is a travel (semantics: "Several logs, a second look"). After those of ``starts``
+    a new log of the same world begins, and after those of ``looks`` the agent looks a second time;
+    the turn of both is None. ``things`` are what is done with markers that have names, beside the
+    one that has none: ``("drop", 4, "coin")``.
     """
 
     slots: int
     views: tuple[frozenset[int], ...]
-    turns: tuple[int, ...]
+    turns: tuple[int | None, ...]
     landmarks: tuple[frozenset[str], ...]
     drops: frozenset[int]
     picks: frozenset[int]
@@ -72,12 +84,15 @@ class Experience:
     drift: int
     stretch: int
     assumed: frozenset[tuple[str, bool]]
+    starts: frozenset[int]
+    looks: frozenset[int]
+    things: frozenset[Thing]
 
     def __init__(
         self,
         slots: int,
         views: Iterable[Iterable[int]],
-        turns: Iterable[int],
+        turns: Iterable[int | None],
         landmarks: Iterable[Iterable[str]] | None = None,
         drops: Iterable[int] = (),
         picks: Iterable[int] = (),
@@ -91,6 +106,9 @@ class Experience:
         drift: int = DRIFT,
         stretch: int = STRETCH,
         assumed: Iterable[tuple[str, bool]] = (),
+        starts: Iterable[int] = (),
+        looks: Iterable[int] = (),
+        things: Iterable[Thing] = (),
     ):
         """What was seen and done. Whether it can be so is told when it is first used: by
         InputError, with the step, as for a file.
@@ -109,6 +127,11 @@ class Experience:
             same, apart: pairs of steps after which the agent was at one place, or at two.
             drift, stretch: how far shifts and lengths may be wrong, in percent.
             assumed: what ``topomap.assume`` has added.
+            starts: the steps, from 1, at which a new log of the same world begins.
+            looks: the steps, from 1, that are no travel but a second look. The turn of a step of
+                either kind is None.
+            things: what is done with markers that have names: ``("drop", step, name)``, or
+                ``"pick"``, ``"marker"``; a name is a term, as a landmark is.
 
         Raises:
             ValueError: there is not one view more than turns, or not as many sets of landmarks;
@@ -120,7 +143,7 @@ class Experience:
             frozenset(view if _is_plain(view, int) else _slots(f"views[{step}]", view))
             for step, view in enumerate(collection("views", views))
         )
-        done = tuple(_slots("turns", turns))
+        done = _turns(turns)
         signs = (frozenset[str](),) * len(seen)
         if landmarks is not None:
             signs = tuple(
@@ -135,6 +158,15 @@ class Experience:
             for name, of in (("drops", drops), ("picks", picks), ("markers", markers))
         ]
         many = len(seen)
+        rests = [
+            frozenset(whole(f"{name}: step", step, 1, len(done)) for step in collection(name, of))
+            for name, of in (("starts", starts), ("looks", looks))
+        ]
+        still = {step for step, turn in enumerate(done, 1) if turn is None}
+        if rests[0] & rests[1] or rests[0] | rests[1] != still:
+            raise ValueError(
+                "turns: None is the turn of the steps of starts or looks, and no other"
+            )
         north = _each("compass", compass, many, integer)
         moved = _each("shifts", shifts, many - 1, _shift)
         measured = _each("lengths", lengths, many - 1, integer)
@@ -143,6 +175,10 @@ class Experience:
         values = (
             *(integer("slots", slots), seen, done, signs, *marks),
             *(north, moved, measured, *pairs, *percents, frozenset(assumed)),
+            *(
+                *rests,
+                frozenset(_thing(thing, len(done)) for thing in collection("things", things)),
+            ),
         )
         for one, value in zip(fields(self), values, strict=True):
             object.__setattr__(self, one.name, value)
@@ -159,6 +195,11 @@ class Experience:
             name: frozenset(step for step in getattr(self, name) if step <= horizon)
             for name in ("drops", "picks", "markers")
         }
+        marks |= {
+            name: frozenset(step for step in getattr(self, name) if step <= horizon)
+            for name in ("starts", "looks")
+        }
+        marks["things"] = frozenset(thing for thing in self.things if thing[1] <= horizon)
         pairs = {
             name: frozenset(pair for pair in getattr(self, name) if max(pair) <= horizon)
             for name in ("same", "apart")
@@ -228,6 +269,9 @@ class Experience:
             lengths=_longer(self.lengths, last - 1, step.length),
             same=self.same | {(earlier, last) for earlier in step.same},
             apart=self.apart | {(earlier, last) for earlier in step.apart},
+            starts=self.starts | {last} if step.start else self.starts,
+            looks=self.looks | {last} if step.look else self.looks,
+            things=self.things | {(kind, last, name) for kind, name in step.things},
         )
 
     def _but(self, **changed: object) -> "Experience":
@@ -238,18 +282,49 @@ class Experience:
             object.__setattr__(made, one.name, changed.get(one.name, getattr(self, one.name)))
         return made
 
-    def marker(self) -> tuple[tuple[int, bool] | None, ...]:
-        """For each step at whose end the marker lies somewhere: after which step it was put
+    @property
+    def parted(self) -> bool:
+        """Whether there are steps that are no travel."""
+        return bool(self.starts or self.looks)
+
+    def names(self) -> list[str | None]:
+        """The markers: None for the one that has no name, and the names of the others."""
+        alone: list[str | None] = [None] * bool(self.drops or self.picks or self.markers)
+        return alone + sorted({name for _, _, name in self.things})
+
+    def marks_of(self, name: str | None) -> tuple[frozenset[int], ...]:
+        """The steps after which a marker is put down, taken up and seen."""
+        if name is None:
+            return self.drops, self.picks, self.markers
+        return tuple(
+            frozenset(step for kind, step, other in self.things if (kind, other) == (mark, name))
+            for mark in MARKER
+        )
+
+    def marker(self, name: str | None = None) -> tuple[tuple[int, bool] | None, ...]:
+        """For each step at whose end a marker lies somewhere: after which step it was put
         down, and whether it is seen. (Whoever takes it up sees it. After one step it is taken up
         before it is put down.)"""
+        drops, picks, markers = self.marks_of(name)
         told: list[tuple[int, bool] | None] = []
         down = None
         for step in range(self.steps + 1):
-            seen = step in self.markers or step in self.picks
+            seen = step in markers or step in picks
             told.append(None if down is None else (down, seen))
-            down = None if step in self.picks else down
-            down = step if step in self.drops else down
+            down = None if step in picks else down
+            down = step if step in drops else down
         return tuple(told)
+
+    def lying(self) -> tuple[tuple[int, int, bool, str | None], ...]:
+        """What is told of markers that lie somewhere: the step, the one after which it was put
+        down, whether it is seen, and its name."""
+        return tuple(
+            (step, down, seen, name)
+            for name in self.names()
+            for step, told in enumerate(self.marker(name))
+            if told
+            for down, seen in [told]
+        )
 
     def corrected(self, misread: Iterable[Misread]) -> "Experience":
         """The experience without its misreadings: what was missed is seen, and what was imagined
@@ -265,7 +340,7 @@ class Experience:
     def misled(self) -> list[int]:
         """The steps after which the agent stands at no gateway, or leaves by none, according to
         what it sees there."""
-        needs = [{0, turn} for turn in self.turns] + [{0}]
+        needs = [{0} if turn is None else {0, turn} for turn in self.turns] + [{0}]
         return [step for step, need in enumerate(needs) if not need <= self.views[step]]
 
     def facts(self) -> str:
@@ -285,12 +360,17 @@ class Experience:
         """The facts that are told of a step, but for pairs of steps; in these it has this number,
         if one is given."""
         named = step if number is None else number
-        line = [f"turn({named},{self.turns[step - 1]})."] if step else []
+        line = []
+        if step:
+            turn = self.turns[step - 1]
+            rest = f"start({named})." if step in self.starts else f"look({named})."
+            line.append(rest if turn is None else f"turn({named},{turn}).")
         line += [f"view({named},{slot})." for slot in sorted(self.views[step])]
         line += [f"landmark({named},{term})." for term in sorted(self.landmarks[step])]
         line += [f"marker({named})."] * (step in self.markers)
         line += [f"pick({named})."] * (step in self.picks)
         line += [f"drop({named})."] * (step in self.drops)
+        line += sorted(f"{kind}({named},{name})." for kind, at, name in self.things if at == step)
         if self.compass and (slot := self.compass[step]) is not None:
             line.append(f"compass({named},{slot}).")
         if step and self.shifts and (shift := self.shifts[step - 1]) is not None:
@@ -304,6 +384,8 @@ class Experience:
         stars = {place: self.views[place] for place, _ in at}
         links: dict[Gateway, Gateway] = {}
         for turn, (place, slot), arrival in zip(self.turns, at, at[1:], strict=False):
+            if turn is None:
+                continue
             out = place, (slot + turn) % self.slots
             links[out], links[arrival] = arrival, out
         landmarks = {place: self.landmarks[place] for place in stars}
@@ -368,6 +450,23 @@ def _two(name: str, given: Iterable[int], what: str) -> tuple[int, int]:
 def _is_plain(given: object, *kinds: type) -> bool:
     """Whether something is a frozen set of these types and no others already: most are."""
     return type(given) is frozenset and {*map(type, given)} <= {*kinds}
+
+
+def _turns(given: Iterable[int | None]) -> tuple[int | None, ...]:
+    """Turns of any type of whole number, as int."""
+    return tuple(
+        turn if turn is None or type(turn) is int else integer("turns: slot", turn)
+        for turn in collection("turns", given)
+    )
+
+
+def _thing(given: Thing, last: int) -> Thing:
+    """What is done with a marker that has a name."""
+    if isinstance(given, str) or len(given) != 3 or given[0] not in MARKER:
+        raise ValueError(f"things: {shown(given)} is not such as ('drop', 4, 'coin')")
+    kind, step, name = given
+    (term,) = _terms("things", [name])
+    return kind, whole("things: step", step, 0, last), term
 
 
 def _slots(name: str, given: Iterable[int]) -> list[int]:
@@ -439,15 +538,16 @@ def _marker(
     return [frozenset(put), frozenset(taken), frozenset(seen)]
 
 
-def marker_fault(marks: Container[str], out: bool) -> str | None:
-    """What is impossible in what is done with the marker after a step; ``out`` tells whether it
+def marker_fault(marks: Container[str], out: bool, name: str | None = None) -> str | None:
+    """What is impossible in what is done with a marker after a step; ``out`` tells whether it
     lies somewhere before that."""
+    marker = "the marker" if name is None else f"the marker {printable(name)}"
     if "pick" in marks and not out:
-        return "the marker is taken up, but lies nowhere"
+        return f"{marker} is taken up, but lies nowhere"
     if "drop" in marks and out and "pick" not in marks:
-        return "the marker is put down, but lies somewhere already"
+        return f"{marker} is put down, but lies somewhere already"
     if "marker" in marks and not out and "drop" not in marks:
-        return "the marker is seen, but lies nowhere"
+        return f"{marker} is seen, but lies nowhere"
     return None
 
 

@@ -1,8 +1,9 @@
 """The facts of instance files: experiences are read from them, and their faults told.
 
 An instance file is data: ground facts ``slots/1``, ``view/2``, ``turn/2``, ``landmark/2``,
-``drop/1``, ``pick/1``, ``marker/1``, ``compass/2``, ``shift/3``, ``length/2``, ``same/2`` and
-``apart/2`` (see ``encodings/topomap.lp``), and comments. Anything else is refused.
+``start/1``, ``look/1``, ``drop/1``, ``pick/1``, ``marker/1`` (these three also with the name of a
+marker), ``compass/2``, ``shift/3``, ``length/2``, ``same/2`` and ``apart/2`` (see
+``encodings/topomap.lp``), and comments. Anything else is refused.
 """
 
 import difflib
@@ -15,7 +16,15 @@ from typing import Any
 
 import clingo
 
-from topomap.model.experience import MARKER, MOST_SLOTS, Experience, Shift, marker_fault, marker_out
+from topomap.model.experience import (
+    MARKER,
+    MOST_SLOTS,
+    Experience,
+    Shift,
+    Thing,
+    marker_fault,
+    marker_out,
+)
 from topomap.model.terms import STRING, cut_short, ground, quoted
 from topomap.runtime import files
 from topomap.runtime.errors import InputError
@@ -32,7 +41,11 @@ SIGNATURES = {  # the facts of an instance
     "length": "length(T,D)",
     "same": "same(T,U)",
     "apart": "apart(T,U)",
+    "start": "start(T)",
+    "look": "look(T)",
 }
+NAMED = {name: f"{name}(T,M)" for name in MARKER}  # of markers that have names
+RESTS = ("start", "look")  # steps that are no travel
 PAIRS = ("same", "apart")
 HINT = " (misread? solve --noise allows for that)"
 
@@ -89,8 +102,9 @@ class Facts:
     ``views[t]``, ``turns[t]`` and ``landmarks[t]`` hold what is told of step t, ``marks`` the
     steps of each name of MARKER, ``steps`` each step of which anything is told. ``known[name][t]``
     holds the numbers that are told by compass/2, shift/3 or length/2, and ``pairs[name]`` the
-    pairs of same/2 or apart/2, as they are told. ``unread`` is the number of statements that are no
-    facts of an instance.
+    pairs of same/2 or apart/2, as they are told; ``rests[name]`` the steps of start/1 or look/1,
+    and ``things`` what is done with markers that have names. ``unread`` is the number of statements
+    that are no facts of an instance.
     """
 
     slots: dict[int, int] = field(default_factory=dict)
@@ -104,6 +118,8 @@ class Facts:
     pairs: dict[str, dict[tuple[int, int], int]] = field(
         default_factory=lambda: {name: {} for name in PAIRS}
     )
+    rests: dict[str, dict[int, int]] = field(default_factory=lambda: {name: {} for name in RESTS})
+    things: dict[Thing, int] = field(default_factory=dict)
     steps: dict[int, int] = field(default_factory=dict)
     unread: int = 0
 
@@ -134,8 +150,12 @@ class Facts:
             self.slots.setdefault(first, line)
             return
         self.steps.setdefault(first, line)
-        if name in MARKER:
+        if name in MARKER and len(arguments) == 2:
+            self.things.setdefault((name, first, str(arguments[1])), line)
+        elif name in MARKER:
             self.marks[name].setdefault(first, line)
+        elif name in RESTS:
+            self.rests[name].setdefault(first, line)
         elif name in PAIRS:
             other = arguments[1].number
             self.steps.setdefault(other, line)
@@ -164,15 +184,18 @@ class Facts:
                 yield Fault(fault, line)
             elif len(self.slots) == 1:
                 slots = number
-        last = max([0, *self.turns])
-        later = sorted({0, *(step for step in self.turns if step > 0)})
+        told = {*self.turns, *(step for steps in self.rests.values() for step in steps)}
+        last = max([0, *told])
+        later = sorted({0, *(step for step in told if step > 0)})
         gaps = {step + 1: after for step, after in itertools.pairwise(later)}
-        out, whole = False, True  # whether the marker lies somewhere; whether that can be told
-        for step in sorted({0, *self.steps, *(gap for gap in gaps if gap not in self.turns)}):
+        names = {None, *(name for _, _, name in self.things)}
+        out = dict.fromkeys(names, False)  # whether each marker lies somewhere
+        whole = True  # whether that can be told
+        for step in sorted({0, *self.steps, *(gap for gap in gaps if gap not in told)}):
             if step < 0:
                 yield Fault("steps are numbered from 0", self.steps[step], step)
                 continue
-            turned = step == 0 or step in self.turns
+            turned = step == 0 or step in told
             if step > last:
                 said = f"it has no turn (the last one is {last})"
                 yield Fault(said, self.steps[step], step, lacks=True)
@@ -183,14 +206,30 @@ class Facts:
             yield from self._turn_faults(step, slots, noisy)
             yield from self._view_faults(step, slots, noisy, turned)
             yield from self._known_faults(step, slots)
-            marks = {name: self.marks[name][step] for name in MARKER if step in self.marks[name]}
-            if whole and marks:
-                if fault := marker_fault(marks, out):
+            for name in sorted(names, key=str) if whole else ():
+                marks = self._marks(name, step)
+                if marks and (fault := marker_fault(marks, out[name], name)):
                     yield Fault(fault, min(marks.values()), step, lacks=True)
-                out = marker_out(marks, out)
+                out[name] = marker_out(marks, out[name])
+
+    def _marks(self, name: str | None, step: int) -> dict[str, int]:
+        """What is done with a marker after a step, each with its line."""
+        if name is None:
+            return {kind: self.marks[kind][step] for kind in MARKER if step in self.marks[kind]}
+        told = {kind: self.things.get((kind, step, name)) for kind in MARKER}
+        return {kind: line for kind, line in told.items() if line is not None}
 
     def _turn_faults(self, step: int, slots: int | None, noisy: bool) -> Iterator[Fault]:
         turns = self.turns.get(step, {})
+        rests = {name: self.rests[name][step] for name in RESTS if step in self.rests[name]}
+        if rests and step == 0:
+            said = "it is the start already" if "start" in rests else "there is no earlier look"
+            yield Fault(said, min(rests.values()), step)
+        elif rests and turns:
+            said = "it has a turn, but begins a log" if "start" in rests else "a look has no turn"
+            yield Fault(said, min(rests.values()), step)
+        elif len(rests) > 1:
+            yield Fault("it begins a log, and is a second look", max(rests.values()), step)
         if turns and step == 0:
             line = min(turns.values())
             yield Fault("there is a turn, but step 1 is the first with a turn", line, step)
@@ -224,6 +263,9 @@ class Facts:
             if told and step == 0 and name != "compass":
                 said = f"there is a {what}, but step 1 is the first that moves"
                 yield Fault(said, min(told.values()), step)
+            rests = any(step in self.rests[kind] for kind in RESTS)
+            if told and rests and name == "length":
+                yield Fault("there is a length, but it is no travel", min(told.values()), step)
             if len(told) > 1:
                 yield Fault(f"more than one {what}", sorted(told.values())[1], step)
         for (slot,), line in self.known["compass"].get(step, {}).items():
@@ -238,11 +280,12 @@ class Facts:
     def experience(self) -> Experience:
         """The experience that the facts make, if they have no fault."""
         (slots,) = self.slots
-        steps = range(max([0, *self.turns]) + 1)
+        rests = {name: self.rests[name].keys() for name in RESTS}
+        steps = range(max([0, *self.turns, *rests["start"], *rests["look"]]) + 1)
         return Experience(
             slots,
             tuple(frozenset(self.views.get(step, ())) for step in steps),
-            tuple(next(iter(self.turns[step])) for step in steps[1:]),
+            tuple(next(iter(self.turns.get(step, {})), None) for step in steps[1:]),
             tuple(frozenset(self.landmarks.get(step, ())) for step in steps),
             *(frozenset(self.marks[name]) for name in MARKER),
             compass=self._each("compass", steps),
@@ -250,6 +293,9 @@ class Facts:
             lengths=self._each("length", steps[1:]),
             same=self.pairs["same"],
             apart=self.pairs["apart"],
+            starts=rests["start"],
+            looks=rests["look"],
+            things=self.things,
         )
 
     def _each(self, name: str, steps: range) -> list[Any]:
@@ -296,10 +342,14 @@ def misfit(fact: clingo.Symbol, forms: Mapping[str, str] = SIGNATURES) -> str | 
     name, arguments = fact.name, fact.arguments
     text = cut_short(str(fact))
     known = {name: form.count(",") + 1 for name, form in forms.items()}
-    if not fact.positive or known.get(name) != len(arguments):
+    named = fact.positive and name in MARKER and len(arguments) == 2
+    if named and arguments[0].type == clingo.SymbolType.Number:
+        return None
+    if not fact.positive or (known.get(name) != len(arguments) and not named):
         if fact.positive and name in known:
             has = "1 argument" if known[name] == 1 else f"{known[name]} arguments"
-            return f"{text}: {name} has {has}, {forms[name]}"
+            more = f", or 2 with a name, {NAMED[name]}" if name in NAMED else ""
+            return f"{text}: {name} has {has}, {forms[name]}{more}"
         near = difflib.get_close_matches(name[:20], known, 1)
         if fact.positive and near:
             meant = f"did you mean {near[0]}/{known[near[0]]}?"

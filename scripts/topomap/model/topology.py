@@ -146,8 +146,25 @@ class TopologicalMap:
         return faces or [[]]
 
     def genus(self) -> int:
-        """Genus by the Euler-Poincare formula, for a connected map."""
-        return (2 - len(self.stars) + len(self.links) // 2 - len(self.faces())) // 2
+        """Genus by the Euler-Poincare formula: the sum of those of the components."""
+        bare = len(self.stars) - len({place for place, _ in self.links})
+        faces = bare + (len(self.faces()) if self.links else 0)
+        return (2 * self.components() - len(self.stars) + len(self.links) // 2 - faces) // 2
+
+    def components(self) -> int:
+        """How many components the map has: one, unless it is of several logs."""
+        ends: dict[Place, set[Place]] = {place: set() for place in self.stars}
+        for (place, _), (other, _) in self.links.items():
+            ends[place].add(other)
+        left, number = set(ends), 0
+        while left:
+            number += 1
+            waiting = [left.pop()]
+            while waiting:
+                near = ends[waiting.pop()] & left
+                left -= near
+                waiting += near
+        return number
 
     def isomorphic(self, other: "TopologicalMap") -> bool:
         """Whether the maps are one up to the names of places and the slot in which

@@ -86,6 +86,7 @@ def strange(seen: Experience, facts: Facts) -> Iterator[Fault]:
         said = "there is no turn(1), so the place where the agent starts is never left"
         yield Fault(said, facts.steps[0], 0)
         return
+    travels = [step for step, turn in enumerate(seen.turns, 1) if turn is not None]
     if turn := seen.turns[0]:
         said = (
             f"turn(1) is {turn}, so the start looks like an arrival: {START}. If no way is behind "
@@ -93,7 +94,7 @@ def strange(seen: Experience, facts: Facts) -> Iterator[Fault]:
         )
         yield Fault(said, facts.turns[1][turn], 1)
     straight = f"0 is the way back, straight on is {seen.slots // 2}"
-    choice = [step for step in range(2, seen.steps + 1) if len(seen.views[step - 1]) > 1]
+    choice = [step for step in travels if step > 1 and len(seen.views[step - 1]) > 1]
     if len(choice) >= ALWAYS and not any(seen.turns[1:]):
         said = f"every turn from step 2 is 0: the agent turns back at once everywhere; {straight}"
         yield Fault(said, facts.turns[2][0], 2)

@@ -58,7 +58,9 @@ def turn(experience: "Experience", step: int) -> str:
     if step == 0:
         return "start"
     slot = experience.turns[step - 1]
-    if step == 1:
+    if slot is None:
+        return "a new log" if step in experience.starts else "a second look"
+    if step == 1 or experience.turns[step - 2] is None:
         return f"leave {'by the gateway stood at' if slot == 0 else _clockwise(slot)}"
     return direction(slot, experience.slots)
 
@@ -78,15 +80,12 @@ def view(experience: "Experience", step: int) -> str:
 
 def marker(experience: "Experience", step: int) -> str:
     """What is seen of the marker after a step, and what is done with it."""
-    told = [
-        word
-        for word, steps in (
-            ("seen", experience.markers - experience.picks - experience.drops),
-            ("taken up", experience.picks),
-            ("put down", experience.drops),
-        )
-        if step in steps
-    ]
+    told = []
+    for name in experience.names():
+        drops, picks, markers = experience.marks_of(name)
+        words = {"seen": markers - picks - drops, "taken up": picks, "put down": drops}
+        of = "" if name is None else f"{printable(name)} "
+        told += [of + word for word, steps in words.items() if step in steps]
     return ", ".join(told)
 
 

@@ -78,6 +78,15 @@ def check_proofs(path: str, experience: Experience) -> Checked:
         at = beginning(f"{path}: map {number}", entry["at"], experience, experience)
         grown = check.Grown(experience, dict(enumerate(at)), experience.steps)
         landmarks = {place: experience.landmarks[place] for place in grown.stars}
+        for name in {name for _, _, name in experience.things}:
+            last = max(
+                step for kind, step, other in experience.things if (kind, other) == ("drop", name)
+            )
+            if not any(
+                kind == "pick" and other == name and step > last
+                for kind, step, other in experience.things
+            ):
+                landmarks[at[last][0]] |= {f"marker({name})"}
         lies = at[put][0] if lying else None
         # A compass counts if each visit has it.
         slots = [slot for slot in experience.compass if slot is not None]

@@ -21,6 +21,7 @@ RULES = {
     "compass": "compass",
     "odometry": "odometry",
     "length": "lengths",
+    "look": "second look",
     "same": "known closures",
     "apart": "known closures",
     "unification": "gateway unification",
@@ -74,14 +75,21 @@ class Broken:
     def left_by(self, step: int) -> DState:
         """The gateway by which a step leaves."""
         place, slot = self.at[step - 1]
-        return place, (slot + self.experience.turns[step - 1]) % self.slots
+        turn = self.experience.turns[step - 1]
+        assert turn is not None
+        return place, (slot + turn) % self.slots
 
     @cached_property
     def runs(self) -> dict[int, dict[int, int]]:
         """Of each run its visits, each with the slot of the place for which the run heads."""
         runs: dict[int, dict[int, int]] = {}
+        rested = True
         for step, turn in enumerate(self.experience.turns, 1):
-            if step == 1 or turn != self.slots // 2:
+            if turn is None:
+                rested = True
+                continue
+            if rested or turn != self.slots // 2:
+                rested = False
                 run = runs[step] = {step - 1: self.left_by(step)[1]}
             run[step] = (self.at[step][1] + self.slots // 2) % self.slots
         return runs
@@ -191,6 +199,9 @@ class Broken:
             return self._path(kind, arguments)
         if kind in KNOWN:
             return told_known(self.experience, kind, arguments, self.at)
+        if kind == "look":
+            words = f"after the second look of step {arguments[0]} the agent would stand elsewhere"
+            return Told(words, (arguments[0] - 1, arguments[0]))
         if kind == "planar":
             steps, places = self.cycle(arguments[0])
             words = (
@@ -277,6 +288,7 @@ def told_plainly(kind: str, arguments: Sequence[int]) -> Told:
         "planar": f"the links of {steps} do not cross",
         "euler": "|V| - |E| + faces is 2",
         "bound": "there are not too many places",
+        "look": f"the second look of {steps} is from where the agent stands",
         "boundary": f"the paths of {steps} meet once at most",
         "perpendicular": f"the paths of {steps} meet once at most",
         "triangle": f"the paths of {steps} do not meet pairwise",
@@ -374,10 +386,15 @@ def _decimal(number: Fraction) -> str:
 
 def told_marker(experience: Experience, step: int, at: Sequence[DState] | None = None) -> Told:
     """What is seen of the marker, and where it lies."""
-    told = experience.marker()[step]
-    assert told
-    down, seen = told
-    words = f"after step {step} the agent {'sees' if seen else 'does not see'} the marker, "
+    lying = [(down, seen, name) for at_, down, seen, name in experience.lying() if at_ == step]
+    wrong = [
+        (down, seen, name)
+        for down, seen, name in lying
+        if at is None or seen != (at[step][0] == at[down][0])
+    ]
+    down, seen, name = (wrong or lying)[0]
+    marker = "the marker" if name is None else f"the marker {printable(name)}"
+    words = f"after step {step} the agent {'sees' if seen else 'does not see'} {marker}, "
     if at is None:
         words += f"which it put down after step {down}"
     else:

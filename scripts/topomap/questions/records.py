@@ -14,8 +14,16 @@ import clingo
 from topomap.documents.maps import is_number
 from topomap.model import words
 from topomap.model.experience import MARKER, Step, marker_fault, marker_out
-from topomap.model.facts import PAIRS, SIGNATURES, ground_facts, misfit, range_fault, slots_fault
-from topomap.model.terms import cut_short
+from topomap.model.facts import (
+    PAIRS,
+    RESTS,
+    SIGNATURES,
+    ground_facts,
+    misfit,
+    range_fault,
+    slots_fault,
+)
+from topomap.model.terms import cut_short, spelt
 from topomap.runtime.errors import InputError
 from topomap.runtime.limits import DRIFT, STRETCH
 
@@ -50,7 +58,7 @@ class Record:
         last, step = self.steps[-1], len(self.steps) - 1
         if self.slots is None:
             return "no slots(K)"
-        if step and last.turn is None:
+        if step and last.turn is None and not (last.start or last.look):
             return f"step {step}: no turn"
         if not last.view:
             return f"step {step}: no view"
@@ -92,8 +100,12 @@ class Record:
             return self._seen(first, view=arguments[1].number)
         if name == "turn":
             return self._seen(first, turn=arguments[1].number)
+        if name in MARKER and len(arguments) == 2:
+            return self._with_thing(first, name, str(arguments[1]))
         if name in MARKER:
             return self._seen(first, mark=name)
+        if name in RESTS:
+            return self._rested(first, name)
         numbers = tuple(argument.number for argument in arguments[1:] if name != "landmark")
         if name in PAIRS:
             return self._paired(name, first, *numbers)
@@ -105,12 +117,15 @@ class Record:
 
     def _marked(self) -> "Record":
         """The record, if what is told of the marker can be."""
-        out = False
+        out: dict[str | None, bool] = {}
         for number, step in enumerate(self.steps):
-            if step.marks:
-                if fault := marker_fault(step.marks, out):
+            marks: dict[str | None, set[str]] = {None: {*step.marks}} if step.marks else {}
+            for kind, name in step.things:
+                marks.setdefault(name, set()).add(kind)
+            for which, done in marks.items():
+                if fault := marker_fault(done, out.get(which, False), which):
                     raise LineFault(f"step {number}: {fault}")
-                out = marker_out(step.marks, out)
+                out[which] = marker_out(done, out.get(which, False))
         return self
 
     def with_slots(self, slots: int) -> "Record":
@@ -123,6 +138,30 @@ class Record:
             raise LineFault("slots are to be told before the first step")
         return replace(self, slots=slots)
 
+    def _with_thing(self, step: int, kind: str, name: str) -> "Record":
+        """The record with what is done with a marker that has a name."""
+        record = self._seen(step)
+        known = record.steps[step]
+        changed = replace(known, things=known.things | {(kind, name)})
+        return replace(record, steps=(*record.steps[:step], changed))
+
+    def _rested(self, step: int, kind: str) -> "Record":
+        """The record with a step that is no travel."""
+        record = self._seen(step)
+        known = record.steps[step]
+        if step == 0:
+            said = "it is the start already" if kind == "start" else "there is no earlier look"
+            raise LineFault(f"step 0: {said}")
+        if known.turn is not None:
+            said = "it has a turn, but begins a log" if kind == "start" else "a look has no turn"
+            raise LineFault(f"step {step}: {said}")
+        if known.length is not None:
+            raise LineFault(f"step {step}: there is a length, but it is no travel")
+        if (kind == "start" and known.look) or (kind == "look" and known.start):
+            raise LineFault(f"step {step}: it begins a log, and is a second look")
+        changed: dict[str, Any] = {kind: True}
+        return replace(record, steps=(*record.steps[:step], replace(known, **changed)))
+
     def _known(self, step: int, name: str, value: Any) -> "Record":
         """The record with what is known besides views of the last step, or of the next one."""
         record = self._seen(step)
@@ -134,6 +173,8 @@ class Record:
             raise LineFault(f"step {step}: compass slot {value} is not in 0..{record.slots - 1}")
         if name != "compass" and step == 0:
             raise LineFault(f"step 0: there is a {name}, but step 1 is the first that moves")
+        if name == "length" and (known.start or known.look):
+            raise LineFault(f"step {step}: there is a length, but it is no travel")
         if name == "length" and value <= 0:
             raise LineFault(f"step {step}: length {value} is not above 0")
         changed: dict[str, Any] = {name: value}
@@ -186,6 +227,8 @@ class Record:
                 raise LineFault("step 0: there is a turn, but step 1 is the first with a turn")
             if known.turn not in (None, turn):
                 raise LineFault(f"step {step}: more than one turn")
+            if known.start or known.look:
+                raise LineFault(f"step {step}: it has a turn, and is no travel")
             if turn not in self.steps[step - 1].view:
                 raise LineFault(f"step {step}: turn {turn}: no gateway there after step {step - 1}")
             known = replace(known, turn=turn)
@@ -219,7 +262,9 @@ class Record:
                 known_keys = ", ".join(sorted(known))
                 raise LineFault(f"{cut_short(json.dumps(key))}: not one of {known_keys}")
         first = "slots" if begins else "turn"
-        if not begins and not self.steps:
+        rests = [name for name in RESTS if data.get(name)]
+        known |= {*RESTS, "things"}
+        if (not begins and not self.steps) or rests:
             first, known = "view", known - {"turn"}
         for key in dict.fromkeys((first, "view")):
             if key not in data:
@@ -229,7 +274,7 @@ class Record:
             raise LineFault("view: a list of slots is wanted")
         if not isinstance(landmarks, list) or not all(isinstance(one, str) for one in landmarks):
             raise LineFault("landmarks: a list of terms, as text, is wanted")
-        for name in MARKER:
+        for name in (*MARKER, *RESTS):
             if not isinstance(data.get(name, False), bool):
                 raise LineFault(f"{name}: true or false is wanted")
         if first != "view" and not is_number(data[first]):
@@ -256,6 +301,10 @@ class Record:
         for name in MARKER:
             if data.get(name):
                 record = record._seen(step, mark=name)
+        for name in rests:
+            record = record._rested(step, name)
+        for kind, term in _things(data.get("things", [])):
+            record = record._with_thing(step, kind, term)
         for name in KNOWN_KEYS:
             value = data.get(name)
             if value is not None and not _fits(name, value):
@@ -267,6 +316,20 @@ class Record:
         if lack := record.lack():
             raise LineFault(lack)
         return record._marked()._measured()
+
+
+def _things(value: Any) -> list[tuple[str, str]]:
+    """What is done with markers that have names: lists of two texts, such as ["drop", "coin"]."""
+    found = []
+    for one in value if isinstance(value, list) else [value]:
+        whole = isinstance(one, list) and len(one) == 2 and all(isinstance(x, str) for x in one)
+        if not whole or one[0] not in MARKER:
+            raise LineFault('things: a list of such as ["drop", "coin"] is wanted')
+        try:
+            found.append((one[0], spelt(one[1])))
+        except ValueError as fault:
+            raise LineFault(f"things: {fault}") from None
+    return found
 
 
 def _fits(name: str, value: Any) -> bool:

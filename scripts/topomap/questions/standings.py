@@ -1,7 +1,7 @@
 """Maps in which an agent stands somewhere: what each predicts that will be seen."""
 
 from collections.abc import Hashable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from topomap.documents.bisimulation import Chart
 from topomap.model.experience import DState, Experience
@@ -33,7 +33,21 @@ def standing(experience: Experience, at: tuple[DState, ...]) -> Standing:
         down = None if step in experience.picks else down
         down = step if step in experience.drops else down
     marker = None if down is None else at[down][0]
-    return Standing(experience.map_of(at), at[-1], marker, orientation(experience, at))
+    world = experience.map_of(at)
+    return Standing(
+        replace(world, landmarks=signs(experience, at)), at[-1], marker, orientation(experience, at)
+    )
+
+
+def signs(experience: Experience, at: Sequence[DState]) -> dict[Place, frozenset[str]]:
+    """What is recognised at each place: its landmarks, and markers with names that lie there."""
+    told = {place: experience.landmarks[place] for place, _ in at}
+    for name in {name for _, _, name in experience.things}:
+        drops, picks, _ = experience.marks_of(name)
+        down = max(drops, default=-1)
+        if down > max([-1, *picks]) or down in picks:
+            told[at[down][0]] |= {f"marker({name})"}
+    return told
 
 
 def orientation(experience: Experience, at: Sequence[DState]) -> dict[Place, int]:

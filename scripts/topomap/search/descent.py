@@ -20,6 +20,19 @@ class TooLarge(Exception):
     """The search was ended because of how large its tree is."""
 
 
+class Unforeseen(Hypothesis):
+    """A hypothesis of an experience with steps that are no travel, of which nothing is foretold."""
+
+    def __init__(self, experience: Experience, query: Query):
+        planar = bool(query.parts & {"planar", "euler"})
+        super().__init__(experience, planar, query.places, "perpendicular" in query.parts)
+
+    def least(self) -> tuple[int, int]:
+        """How many paths and places each map below this node has at least, as far as is known."""
+        left = sum(turn is not None for turn in self.experience.turns[self.steps :])
+        return max(1, len(self.paths) - left), self.places
+
+
 class Descent:
     """A search for the maps of a query.
 
@@ -43,7 +56,9 @@ class Descent:
         if query.horizon is not None:
             experience = experience.cut(query.horizon)
         self.query = query
-        self.node = LookAhead(experience, query)
+        self.node = (
+            Unforeseen(experience, query) if experience.parted else LookAhead(experience, query)
+        )
         self.nodes = self.maps = 0
         self.passed = 0.0
         self._kind = kind or query.kind
@@ -54,6 +69,12 @@ class Descent:
         # Of each node on the way to the one where the search stands: its children that are to be
         # visited, the share of the tree below each, and what a map below them costs at least.
         self._way: list[tuple[list[int], float, Cost]] = []
+
+    @property
+    def pairs(self) -> int | None:
+        """How many pairs of visits can be of one place, so far as pairs tell; None of very many,
+        and where that is not foretold."""
+        return self.node.future.pairs if isinstance(self.node, LookAhead) else None
 
     @property
     def size(self) -> float:

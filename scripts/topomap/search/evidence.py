@@ -28,7 +28,9 @@ class Evidence:
         self._track: list[tuple[int, int, int, int]] = []
         begun = x = y = way = 0
         for step, shift in enumerate((None, *experience.shifts) if experience.shifts else ()):
-            if shift is None:
+            if shift is None and step in experience.looks:
+                shift = 0, 0
+            if shift is None or step in experience.starts:
                 begun, x, y, way = step, 0, 0, 0
             else:
                 x, y, way = x + shift[0], y + shift[1], way + abs(shift[0]) + abs(shift[1])

@@ -38,7 +38,9 @@ class Future:
     def __init__(self, experience: Experience, kinds: dict[int, int]):
         self.experience, self.slots, self.kinds = experience, experience.slots, kinds
         self.evidence = Evidence(experience)
-        self.turns = [0, *(turn % self.slots for turn in experience.turns)]
+        turns = [turn for turn in experience.turns if turn is not None]
+        assert len(turns) == experience.steps, "each step is a travel"
+        self.turns = [0, *(turn % self.slots for turn in turns)]
         steps = range(1, experience.steps + 1)
         self.out = [0] + [kinds[(t - 1) * self.slots + self.turns[t]] for t in steps]
         self.arrival = [kinds[t * self.slots] for t in range(experience.steps + 1)]

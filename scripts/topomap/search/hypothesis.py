@@ -39,6 +39,7 @@ class Link(NamedTuple):
     other_places: int
     path_meets: int
     other_meets: int
+    part: int | None  # the component that it joined to another one
 
 
 class Hypothesis:
@@ -71,7 +72,11 @@ class Hypothesis:
             for slot in view:
                 star = frozenset((other - slot) % self.slots for other in view)
                 self.views[first + slot] = numbers.setdefault((star, landmarks), len(numbers))
-        self.marker = experience.marker()
+        # Of each step: after which steps markers were put down that lie somewhere, and whether each
+        # is seen now.
+        self.lying: dict[int, list[tuple[int, bool]]] = {}
+        for step, down, spotted, _ in experience.lying():
+            self.lying.setdefault(step, []).append((down, spotted))
         self.evidence = Evidence(experience)
         # Of each place its visits, and of each link (by the lower of its gateways) the steps along
         # it, if these are asked for.
@@ -101,6 +106,9 @@ class Hypothesis:
         self.places = 0
         self.matches = 0  # links between known places: m in the paper's equation (1)
         self._joined: dict[int, int] = {}  # an axis to another one of its path
+        self.parted = bool(experience.starts)  # whether there may be several components
+        self._part: dict[int, int] = {}  # a place to another one of its component
+        self.components = 1
         self._trail: list[Link | None] = []
         self._add_place(0)
 
@@ -121,7 +129,10 @@ class Hypothesis:
 
     @property
     def genus(self) -> int:
-        """Genus, by Euler's formula: a tree with ``matches`` more links."""
+        """Genus, by Euler's formula: a tree with ``matches`` more links; or several components."""
+        if self.parted:
+            links = len(self.links) // 2
+            return (2 * self.components - self.places + links - len(self.faces)) // 2
         return (self.matches + 1 - len(self.faces)) // 2
 
     @property
@@ -150,10 +161,26 @@ class Hypothesis:
             return False
         return not any(x != y and a & b for (x, a), (y, b) in combinations(met, 2))
 
+    @property
+    def rests(self) -> str | None:
+        """Why the next step is no travel: "start", of a new log, or "look"; None if it is one."""
+        step = self.steps + 1
+        if step in self.experience.starts:
+            return "start"
+        return "look" if step in self.experience.looks else None
+
     def out(self) -> int:
-        """The gateway by which the next step leaves."""
+        """The gateway by which the next step leaves, which is a travel."""
         place, slot = divmod(self.at[-1], self.slots)
-        return place * self.slots + (slot + self.experience.turns[self.steps]) % self.slots
+        turn = self.experience.turns[self.steps]
+        assert turn is not None
+        return place * self.slots + (slot + turn) % self.slots
+
+    def component(self, place: int) -> int:
+        """The component of the map in which a place is, named by one of its places."""
+        while place in self._part:
+            place = self._part[place]
+        return place
 
     def path(self, gateway: int) -> int:
         """The path through a gateway and its opposite one, named by such an axis of it."""
@@ -175,10 +202,11 @@ class Hypothesis:
         return [gateway for gateway in gateways if self.views[gateway] == seen]
 
     def marked(self, gateway: int) -> bool:
-        """Whether the place of this gateway agrees with what the next step sees of the marker: it
-        sees the marker if this is the place where it lies, and does not see it if not."""
-        told = self.marker[self.steps + 1]
-        return told is None or told[1] == (gateway // self.slots == self.at[told[0]] // self.slots)
+        """Whether the place of this gateway agrees with what the next step sees of markers: it sees
+        a marker if this is the place where it lies, and does not see it if not."""
+        place, at, slots = gateway // self.slots, self.at, self.slots
+        told = self.lying.get(self.steps + 1, ())
+        return all(seen == (place == at[down] // slots) for down, seen in told)
 
     def denied(self, gateway: int) -> str | None:
         """The first rule of ``evidence`` by which the next step does not arrive there, or None."""
@@ -191,7 +219,9 @@ class Hypothesis:
         for earlier in evidence.same.get(step, ()):
             if self.at[earlier] // self.slots != place:
                 return "same"
-        along = self.steps_along.get(min(self.out(), gateway), ()) if evidence.lengths else ()
+        if not evidence.lengths or self.rests:
+            return None
+        along = self.steps_along.get(min(self.out(), gateway), ())
         return "length" if any(evidence.unequal(other, step) for other in along) else None
 
     def allowed(self, arrivals: Iterable[int]) -> list[int]:
@@ -206,10 +236,12 @@ class Hypothesis:
         """Where the next step can arrive: the gateways of known places, and gateway 0 of
         a new one. Where the link is known, its other end, if the view is the predicted one.
         """
+        if self.rests:
+            return self._resting()
         out = self.out()
         if out in self.links:
             return self.allowed(self.fitting((self.links[out],)))
-        near = self.face(out) if self.planar else tuple(g for face in self.faces for g in face)
+        near = self._near(out)
         arrivals = [
             g for g in self.fitting(near) if g != out and self._joins(self.path(out), self.path(g))
         ]
@@ -217,15 +249,46 @@ class Hypothesis:
             arrivals.append((self.steps + 1) * self.slots)
         return self.allowed(arrivals)
 
+    def _near(self, out: int) -> Face:
+        """The pending gateways with which a planar map, or any, can link this one."""
+        if not self.planar:
+            return tuple(gateway for face in self.faces for gateway in face)
+        near = self.face(out)
+        if self.parted:
+            here = self.component(out // self.slots)
+            for face in self.faces:
+                if face and self.component(face[0] // self.slots) != here:
+                    near += face
+        return near
+
+    def _resting(self) -> list[int]:
+        """Where the agent can be after a step that is no travel: after a second look where it was,
+        and where a new log begins at any gateway of a known place, or at a new one."""
+        step = self.steps + 1
+        if self.rests == "look":
+            return self.allowed(self.fitting((self.at[-1],)))
+        known = [
+            gateway
+            for place in {gateway // self.slots: None for gateway in self.at}
+            for gateway in self.stars[place]
+        ]
+        arrivals = self.fitting(tuple(known))
+        if self.bound is None or self.places < self.bound:
+            arrivals.append(step * self.slots)
+        return self.allowed(arrivals)
+
     def tried(self) -> Iterator[tuple[int, str | None]]:
         """Where the next step might arrive: at the other end of its link; or if that is not
         known, at any other pending gateway, or a new place. Each with the first of ``RULES``
         that refuses it; the children are those that none does."""
+        if self.rests:
+            yield from self._tried_resting()
+            return
         out = self.out()
         if out in self.links:
             yield self.links[out], self._mistaken(self.links[out])
             return
-        face = self.face(out)
+        face = self._near(out)
         for gateway in (g for face in self.faces for g in face if g != out):
             rule = self._mistaken(gateway)
             paths = self.path(out), self.path(gateway)
@@ -236,6 +299,20 @@ class Hypothesis:
             if rule in (None, "perpendicular") and self.planar and gateway not in face:
                 rule = "planarity"
             yield gateway, rule
+        yield from self._tried_new()
+
+    def _tried_resting(self) -> Iterator[tuple[int, str | None]]:
+        """The same of a step that is no travel."""
+        if self.rests == "look":
+            yield self.at[-1], self._mistaken(self.at[-1])
+            return
+        for place in {gateway // self.slots: None for gateway in self.at}:
+            for gateway in self.stars[place]:
+                yield gateway, self._mistaken(gateway)
+        yield from self._tried_new()
+
+    def _tried_new(self) -> Iterator[tuple[int, str | None]]:
+        """The same of a new place."""
         new = (self.steps + 1) * self.slots
         full = self.bound is not None and self.places >= self.bound
         refused = "marker" if not self.marked(new) else self.denied(new)
@@ -267,6 +344,9 @@ class Hypothesis:
 
     def enter(self, arrival: int) -> None:
         """Go one step on, to a gateway that is one of the children."""
+        if self.rests:
+            self._rest(arrival)
+            return
         out = self.out()
         self._trail.append(None if out in self.links else self._add_link(out, arrival))
         self.at.append(arrival)
@@ -274,6 +354,19 @@ class Hypothesis:
         if self.evidence:
             self.visits.setdefault(arrival // self.slots, []).append(self.steps)
             self.steps_along.setdefault(min(out, arrival), []).append(self.steps)
+
+    def _rest(self, arrival: int) -> None:
+        """Go on by a step that is no travel, to one of the children."""
+        place = arrival // self.slots
+        self._trail.append(None)
+        self.at.append(arrival)
+        self.steps += 1
+        if self.evidence:
+            self.visits.setdefault(place, []).append(self.steps)
+        if place == self.steps:
+            self._add_place(place)
+            self.faces = (*self.faces, self.stars[place])
+            self.components += 1
 
     def _add_link(self, out: int, arrival: int) -> Link:
         place, step = arrival // self.slots, self.steps + 1
@@ -291,6 +384,10 @@ class Hypothesis:
             there = self.face(arrival)
             others.remove(there)
             self.faces = (rest + after(there, arrival), *others)
+        parts = self.component(out // self.slots), self.component(place)
+        if self.parted and parts[0] != parts[1]:
+            self._part[parts[1]] = parts[0]
+            self.components -= place != step
         self.matches += place != step
         self.links[out], self.links[arrival] = arrival, out
         path, other = self.path(out), self.path(arrival)
@@ -304,7 +401,8 @@ class Hypothesis:
             self.meets[crossing] ^= both
         for crossing in numbers(met & meets):
             self.meets[crossing] ^= 1 << other
-        return Link(out, arrival, path, other, faces, places, more, meets, met)
+        merged = parts[1] if self.parted and parts[0] != parts[1] else None
+        return Link(out, arrival, path, other, faces, places, more, meets, met, merged)
 
     def undo(self) -> None:
         """Go one step back."""
@@ -313,9 +411,17 @@ class Hypothesis:
         step, self.steps = self.steps, self.steps - 1
         if self.evidence:
             self.visits[arrival // self.slots].pop()
-            self.steps_along[min(self.out(), arrival)].pop()
+            if not self.rests:
+                self.steps_along[min(self.out(), arrival)].pop()
         if link is None:
+            if arrival // self.slots == step:
+                self._remove_place(step)
+                self.faces = self.faces[:-1]
+                self.components -= 1
             return
+        if link.part is not None:
+            del self._part[link.part]
+            self.components += arrival // self.slots != step
         del self.links[link.out], self.links[arrival], self._joined[link.other]
         self.paths[link.path], self.paths[link.other] = link.path_places, link.other_places
         self.meets[link.path], self.meets[link.other] = link.path_meets, link.other_meets

@@ -74,7 +74,7 @@ class LookAhead(Hypothesis):
             room = self.bound is None or self.places < self.bound
             if room and not due and self._makes_place(out, step):
                 arrivals.append(step * self.slots)
-        if self.marker[step] is None and not self.evidence:
+        if step not in self.lying and not self.evidence:
             return arrivals
         return self.allowed(arrivals)
 

@@ -55,11 +55,13 @@ class Boundaries(clingo.Propagator):
                 return
 
 
-def crossed(slots: int, turns: Sequence[int], at: Sequence[DState]) -> list[set[int]]:
+def crossed(slots: int, turns: Sequence[int | None], at: Sequence[DState]) -> list[set[int]]:
     """Why the boundaries of a map are not consistent: sets of steps, the links of which make
     it so, the smallest first."""
     links: dict[Gateway, tuple[Gateway, int]] = {}
     for step, (turn, (place, slot), arrival) in enumerate(zip(turns, at, at[1:], strict=False), 1):
+        if turn is None:
+            continue
         out = place, (slot + turn) % slots
         if out not in links:
             links[out], links[arrival] = (arrival, step), (out, step)

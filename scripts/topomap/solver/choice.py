@@ -69,9 +69,11 @@ class Trial:
         watch.by, watch.least = CLINGO, None
         if query.encoding != "work" or query.noise is not None or experience.assumed:
             return
+        if experience.parted:
+            return
         watch.by = SEARCH
         descent = Descent(experience, query, kind, self._heed)
-        self._pairs = descent.node.future.pairs
+        self._pairs = descent.pairs
         self.rest = descent.found(watch)
         many = self._pairs is None or self._pairs > MANY_PAIRS
         self._committed = many and not phases.serve(experience, query)

@@ -84,6 +84,7 @@ class OnlineSolver:
             (first.landmarks,),
             *marked,
             compass=[first.compass],
+            things=[(kind, 0, name) for kind, name in first.things],
             drift=drift,
             stretch=stretch,
         )
@@ -278,6 +279,8 @@ class OnlineSolver:
         """The links of which it is certain that the steps that made them were at places seen
         before: said of the first visits there."""
         for step, turn in enumerate(self.experience.turns, 1):
+            if turn is None:
+                continue
             if step - 1 in first or step in first:
                 here, shift = first.get(step - 1, (step - 1, 0))
                 there, slot = first.get(step, (step, 0))

@@ -53,6 +53,8 @@ Heed = Callable[[clingo.Control], None]
 def serve(experience: Experience, query: "Query") -> bool:
     """Whether there are phases for such a query. There are none where views may be wrong: all that
     the phases find rests on what is seen."""
+    if experience.parted:
+        return False
     return query.noise is None and (_bounded(experience, query) or _square(experience, query))
 
 

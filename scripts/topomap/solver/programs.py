@@ -49,7 +49,8 @@ def control(
 def beyond(experience: Experience) -> list[str]:
     """The files of encodings/paper/ for what is told of which the paper does not know."""
     needed = {
-        "marker": experience.drops,
+        "marker": experience.drops or experience.things,
+        "logs": experience.parted,
         "compass": experience.compass,
         "odometry": experience.shifts,
         "lengths": experience.lengths,
