@@ -27,7 +27,23 @@ KINDS = {  # what topomap.model.experience says, and the error that says the sam
     r"step (?P<T>\d+): the marker is put down.*": "{T},put_down",
     r"step (?P<T>\d+): the marker is taken up.*": "{T},taken_up",
     r"step (?P<T>\d+): the marker is seen.*": "{T},no_marker",
-    r".* a step or a slot is a whole number": r"-?\d+,(no_number|no_step|slot)\(.*\)",
+    r".* a step or a slot is a whole number": r"-?\d+,(no_number|no_step|(compass_)?slot)\(.*\)",
+    r".* a step or a shift or a length is a whole number": r"-?\d+,no_(step|shift|length)\(.*\)",
+    r"step (?P<T>\d+): compass slot (?P<S>-?\d+) is not in .*": r"{T},compass_slot\({S}\)",
+    r"step (?P<T>\d+): more than one compass": "{T},two_compasses",
+    r"step (?P<T>\d+): more than one shift": "{T},two_shifts",
+    r"step (?P<T>\d+): more than one length": "{T},two_lengths",
+    r"step 0: there is a shift, .*": "0,shift_at_start",
+    r"step 0: there is a length, .*": "0,length_at_start",
+    r"step (?P<T>\d+): length (?P<D>-?\d+) is not above 0": r"{T},no_length\({D}\)",
+    r"step (?P<T>\d+): there is a length, but it is no travel": r"{T},no_way\(.*\)",
+    r"step (?P<T>\d+): the shifts up to here .*": "{T},far",
+    r"step (?P<T>\d+): length \d+ is above .*": "{T},long",
+    r"step (?P<T>\d+): it is told to be of another place than itself": "{T},apart_from_itself",
+    r"step 0: it is the start already": "0,starts_already",
+    r"step 0: there is no earlier look": "0,no_earlier_look",
+    r"step (?P<T>\d+): (it has a turn, but begins a log|a look has no turn)": "{T},travels",
+    r"step (?P<T>\d+): it begins a log, and is a second look": "{T},start_and_look",
 }
 TERMS = ("a", '"0"', "f(0)", "(0,1)", "#inf", "#sup", '""', "-a")
 NUMBERS = (-1, 0, 1, 2, 3, 4, 5, 6, 7, 9, -4, 10**6, 10**9, LARGEST, -LARGEST)
@@ -56,8 +72,10 @@ def corrupted(draw):
         )
     ]
     for _ in range(draw.choice([0, 1, 1, 1, 2, 3])):
-        terms = [str(draw.choice(NUMBERS)) if draw.random() < 0.8 else draw.choice(TERMS)]
-        terms.append(str(draw.choice(NUMBERS)) if draw.random() < 0.8 else draw.choice(TERMS))
+        terms = [
+            str(draw.choice(NUMBERS)) if draw.random() < 0.8 else draw.choice(TERMS)
+            for _ in range(3)
+        ]
         name = draw.choice(list(SIGNATURES))
         edit = draw.choice(["drop", "add", "change", "change", "shift"]) if facts else "add"
         if edit == "add":

@@ -10,7 +10,7 @@ from oracles.rule_mutation import closure, named_files, statements
 
 ROW = re.compile(r"^\| `(\w+)(?:\(([^)]*)\))?` \| (.+?) \| (.+?) \|$", re.MULTILINE)
 MARKER = {"drop", "pick", "marker"}  # their second arity names one of several markers
-RESERVED = {"compass", "shift", "length", "straight", "same", "apart", "start", "look"}
+RESERVED = {"straight"}
 MOST = 45  # rules of the statement, and of what may lie beyond it
 
 
