@@ -34,6 +34,34 @@ class Assignment:
         seen = t in e.markers or t in e.picks
         return down is not None and seen != (self.at[t][0] == self.at[down][0])
 
+    def compass(self, t, u):
+        slots = {v: self.experience.compass[v] for v in (t, u)}
+        zeros = {
+            (slot - self.at[v][1]) % self.slots for v, slot in slots.items() if slot is not None
+        }
+        return self.at[t][0] == self.at[u][0] and len(zeros) > 1
+
+    def odometry(self, t, u):
+        moved = self.experience.shifts[t:u]
+        if None in moved:
+            return False
+        way = sum(abs(x) + abs(y) for x, y in moved)
+        far = max(abs(sum(shift[axis] for shift in moved)) for axis in (0, 1))
+        return self.at[t][0] == self.at[u][0] and 100 * far > self.experience.drift * way
+
+    def length(self, t, u):
+        one, other = self.experience.lengths[t - 1], self.experience.lengths[u - 1]
+        if one is None or other is None:
+            return False
+        unlike = 100 * abs(one - other) > self.experience.stretch * max(one, other)
+        return unlike and self.ways[u - 1][1] in self.ways[t - 1]
+
+    def same(self, t, u):
+        return (t, u) in self.experience.same and self.at[t][0] != self.at[u][0]
+
+    def apart(self, t, u):
+        return (t, u) in self.experience.apart and self.at[t][0] == self.at[u][0]
+
     def schema(self, t, u):
         (out, end), (other, arrival) = self.ways[t - 1], self.ways[u - 1]
         return (out == other) != (end == arrival)
@@ -150,8 +178,12 @@ def reasons(experience):
         yield f"marker({t})"
         for u in steps[t + 1 :]:
             yield from (f"view({u},{t})", f"twice({t},{u})")
+            yield from (f"same({t},{u})", f"apart({t},{u})")
+            yield from [f"compass({t},{u})"] * bool(experience.compass)
+            yield from [f"odometry({t},{u})"] * bool(experience.shifts)
             if t:
                 yield from (f"schema({t},{u})", f"unification({t},{u})")
+                yield from [f"length({t},{u})"] * bool(experience.lengths)
     runs = Assignment(experience, tuple((t, 0) for t in steps)).runs()
     yield from (f"circular({a})" for a in runs)
     yield from (f"crossed({a},{b})" for a in runs for b in runs if a < b)

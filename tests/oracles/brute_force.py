@@ -214,9 +214,10 @@ def contradicts(experience, at):
         zeros = {(compass[v] - at[v][1]) % slots for v in (t, u) if v in compass}
         if len(zeros) > 1:
             return True
-        between = [step for step in range(t + 1, u + 1) if turns[step] != "look" or step in shift]
+        between = [*range(t + 1, u + 1)] if shift else []
         if any(turns[step] == "start" for step in between):
             continue
+        between = [step for step in between if turns[step] != "look" or step in shift]
         if all(step in shift for step in between):
             moved = [sum(shift[step][axis] for step in between) for axis in (0, 1)]
             way = sum(abs(shift[step][0]) + abs(shift[step][1]) for step in between)

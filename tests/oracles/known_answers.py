@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 from functools import cache, partial
 from itertools import combinations, product
 
-from conftest import ENCODINGS, PARTS, Truth, forms
+from conftest import ENCODINGS, PARTS, Truth, beyond, forms
 from topomap.documents.check import STEP_RULES, by_definition, by_rules
 from topomap.model.experience import MARKER, Experience, observe
 from topomap.model.topology import TopologicalMap
@@ -24,10 +24,10 @@ from topomap.worlds.route import snake
 from oracles import phase_answers, walks
 from oracles.broken_rules import Assignment, assignments, reasons
 from oracles.brute_force import Hypothesis
-from oracles.maps_with_errors import DEMANDS, INSTANCES, by_hand, drawn
+from oracles.maps_with_errors import DEMANDS, INSTANCES, by_hand, contradicting, drawn
 from oracles.misreadings import brute, corrupted, expected
 from oracles.statements import FIGURES, PROPERTIES, RELATIONS, relation
-from oracles.worlds import WORLDS, of_grid, random_experience, walked
+from oracles.worlds import WORLDS, informed, logs, of_grid, random_experience, walked
 
 
 def seen(*steps, slots=4):
@@ -292,6 +292,121 @@ def marker() -> Iterator[Query]:
             yield from hypotheses(EXPERIENCES[name].facts(), how, Truth(cut))
 
 
+def knowledge() -> Iterator[Query]:
+    """Experiences of which more is known than views: all that is asked of others, what is broken if
+    it may be, the phases, and statements."""
+    known = [*KNOWN.values(), *(informed(random.Random(f"known {seed}"), 7) for seed in range(30))]
+    told = [*LOGS.values(), *(logs(random.Random(f"logs known {seed}"), 6) for seed in range(30))]
+    for experience in [*known, *told]:
+        truth, how = Truth(experience), tuple(experience.constants())
+        facts = experience.facts()
+        if len(truth.final) < 150:
+            yield from hypotheses(facts, how, truth)
+        answers = frozenset(
+            ((), frozenset(f"at({t},{p},{s})" for t, (p, s) in enumerate(at))) for at in truth.final
+        )
+        explained = f"{facts} :- waived(_)."
+        yield Query(("topomap", "explain"), explained, answers, (*how, "--opt-mode=ignore"))
+        if len(truth.final) < 100:
+            tests = {"planar": PROPERTIES["planar"], "closed": PROPERTIES["closed"]}
+            tests |= {
+                f"{name}({NAMED.get(figure, figure)},2)": partial(
+                    _compared, FIGURES[figure], COMPARED[name], 2
+                )
+                for name in COMPARED
+                for figure in FIGURES
+            }
+            yield from statements(experience, truth, tests)
+    for experience in known:
+        facts, how = experience.facts() + "phases. ", tuple(experience.constants())
+        pairs = phase_answers.Pairs(experience)
+        yield Query(("phases/visits",), facts, shown(*pairs.shown()), how)
+        facts += "".join(f"{atom}. " for atom in pairs.shown())
+        yield replace(left(facts, experience, Truth(experience), []), arguments=how)
+    for experience in KNOWN.values():
+        yield from waived(experience.cut(3), ())
+
+
+# Each of what is known besides views, where it holds and where it bites, at its border.
+ROUND = seen("0 3", "0: 0 3", "3: 0 3", "3: 0 3", "3: 0 3", "3: 0 3")  # perhaps a square
+THERE = seen("0 2", "0: 0 2", "0: 0 2", "0: 0 2")  # to and fro
+KNOWN = {
+    "compass": replace(ROUND, compass=(0, 2, 1, 0, 3, 2)),
+    "compass, elsewhere": replace(ROUND, compass=(0, None, 2, None, 3, 2)),
+    "odometry": replace(ROUND, shifts=((10, 0), (0, 10), (-10, 1), (1, -10), (9, 0))),
+    "odometry, just": replace(ROUND, shifts=((10, 0), (0, 10), (-6, 0), (0, -10), None)),
+    "odometry, just not": replace(ROUND, shifts=((10, 0), (0, 10), (-5, 0), (0, -10), (9, 0))),
+    "odometry, aside": replace(ROUND, shifts=((10, 0), (0, 10), (-10, 0), (0, -5), (9, 0))),
+    "odometry, a gap": replace(ROUND, shifts=((10, 0), None, (10, 0), (10, 0), (10, 0))),
+    "drift": replace(ROUND, shifts=((10, 0), (0, 10), (-5, 0), (0, -10), (9, 0)), drift=20),
+    "length": replace(THERE, lengths=(100, 90, 100)),
+    "length, just not": replace(THERE, lengths=(100, 89, 100)),
+    "length, longer": replace(THERE, lengths=(89, 100, 95)),
+    "length, round": replace(ROUND, lengths=(100, 50, 40, 30, 100)),
+    "length, unlike": replace(ROUND, lengths=(100, 50, 40, 30, 89)),
+    "stretch": replace(THERE, lengths=(100, 89, None), stretch=11),
+    "same": replace(ROUND, same=[(0, 4)]),
+    "same, again": replace(ROUND, same=[(5, 1), (2, 0)]),
+    "apart": replace(ROUND, apart=[(0, 4)]),
+    "apart, the other way": replace(ROUND, apart=[(4, 0), (1, 2)]),
+}
+
+
+def rested(experience: Experience, step: int, kind: str, **more) -> Experience:
+    """The same with a step put in that is no travel: the view of the step before it, again."""
+    views = [*experience.views[:step], experience.views[step - 1], *experience.views[step:]]
+    turns = [*experience.turns[: step - 1], None, *experience.turns[step - 1 :]]
+    return Experience(experience.slots, views, turns, **{kind: [step]}, **more)
+
+
+TWO = Experience(4, [[0], [0, 1], [0, 1], [0]], [0, None, 1], starts=[2])
+LOGS = {
+    "a second look": rested(ROUND, 2, "looks"),
+    "at the start": rested(THERE, 1, "looks"),
+    "looks straight on": rested(seen("0", "0: 0 2", "2: 0 2", "2: 0"), 2, "looks"),
+    "a look with odometry": rested(
+        ROUND, 2, "looks", shifts=[(10, 0), None, (0, 10), (-10, 0), (0, -10), (10, 0)]
+    ),
+    "a log": TWO,
+    "a log from a corridor": rested(seen("0 2", "0: 0 2", "2: 0 2", "2: 0"), 2, "starts"),
+    "a log of one place": Experience(4, [[0], [0], [0]], [0, None], starts=[2]),
+    "two places": Experience(4, [[0, 1], [0, 1]], [None], starts=[1]),
+    "a log with odometry": replace(TWO, shifts=((5, 0), (1, 1), (0, 5))),
+    "coin and rope": Experience(
+        4,
+        [[0, 2], [0, 2], [0, 2], [0, 2]],
+        [0, 0, 0],
+        things=[
+            ("drop", 0, "coin"),
+            ("drop", 1, "rope"),
+            ("marker", 2, "coin"),
+            ("pick", 3, "rope"),
+        ],
+    ),
+    "beside the one without a name": Experience(
+        4, [[0, 2]] * 4, [0, 2, 2], drops=[0], things=[("drop", 1, "coin")], markers=[3]
+    ),
+}
+
+
+def waived(experience: Experience, parts: tuple[str, ...]) -> Iterator[Query]:
+    """All dstates by step, with what they break; and those that break least."""
+    pending = product(range(experience.steps + 1), range(experience.slots))
+    every = [*reasons(experience), *(f"closed({p},{s})" for p, s in pending if parts)]
+    found = []
+    for at in assignments(experience):
+        one = Assignment(experience, at)
+        broken = [f"waived({reason})" for reason in every if one.broken(reason)]
+        atoms = frozenset([*broken, *(f"at({t},{p},{s})" for t, (p, s) in enumerate(at))])
+        found.append((len(broken), atoms))
+    whatever = frozenset(((), atoms) for _, atoms in found)
+    least = min(number for number, _ in found)
+    best = frozenset(((number,), atoms) for number, atoms in found if number == least)
+    files, how = ("topomap", "explain", *parts), tuple(experience.constants())
+    yield Query(files, experience.facts(), whatever, (*how, "--opt-mode=ignore"))
+    yield Query(files, experience.facts(), best, (*how, "--opt-mode=optN"))
+
+
 def hypotheses(facts: str, arguments: tuple[str, ...], truth: Truth) -> Iterator[Query]:
     """What is asked of one experience, of each form of the encodings: all hypotheses, those
     of each part, what each costs, and the best."""
@@ -302,9 +417,9 @@ def hypotheses(facts: str, arguments: tuple[str, ...], truth: Truth) -> Iterator
     def query(parts, found, *more, cost=lambda h: ()):
         answers = frozenset((cost(truth.final[at]), atoms(at)) for at in found)
         for form in forms(*parts):
-            marker = ("beyond/marker",) * (form == "paper" and "drop(" in facts)
+            told = beyond(facts) if form == "paper" else ()
             under = FORMS[form].relative_to(ENCODINGS)
-            files = tuple(str(under / part) for part in ("topomap", *marker, *parts))
+            files = tuple(str(under / part) for part in ("topomap", *told, *parts))
             yield Query(files, facts, answers, (*arguments, *more))
 
     def least(parts, cost, found):
@@ -461,21 +576,7 @@ def given_up() -> Iterator[Query]:
     """All dstates by step, with what they break; and those that break least."""
     names = "corners", "mirrored", "ahead", "branch", "loop", "lost", "added"
     for name, parts in [*((name, ()) for name in names), ("corners", ("closed",))]:
-        experience = EXPERIENCES[name].cut(3)
-        pending = product(range(experience.steps + 1), range(experience.slots))
-        every = [*reasons(experience), *(f"closed({p},{s})" for p, s in pending if parts)]
-        found = []
-        for at in assignments(experience):
-            one = Assignment(experience, at)
-            broken = [f"waived({reason})" for reason in every if one.broken(reason)]
-            atoms = frozenset([*broken, *(f"at({t},{p},{s})" for t, (p, s) in enumerate(at))])
-            found.append((len(broken), atoms))
-        whatever = frozenset(((), atoms) for _, atoms in found)
-        least = min(number for number, _ in found)
-        best = frozenset(((number,), atoms) for number, atoms in found if number == least)
-        files = ("topomap", "explain", *parts)
-        yield Query(files, experience.facts(), whatever, ("--opt-mode=ignore",))
-        yield Query(files, experience.facts(), best, ("--opt-mode=optN",))
+        yield from waived(EXPERIENCES[name].cut(3), parts)
     # If nothing may be given up, the maps of each part are left.
     for name in ("lens", "corners", "triangle"):
         experience = EXPERIENCES[name].cut(6)
@@ -606,7 +707,7 @@ def check() -> Iterator[Query]:
     """Maps, sound and with errors, with the violations that are there by definition. What a
     broken step does to the map as a whole is not defined, so a map with one is asked only
     where both checkers say the same."""
-    for experience, at in [*by_hand(), *drawn(120)]:
+    for experience, at in [*by_hand(), *drawn(120), *contradicting(80)]:
         for demands in (DEMANDS, ()):
             violations = by_definition(experience, at, demands)
             broken = STEP_RULES & dict(violations).keys()
@@ -615,7 +716,8 @@ def check() -> Iterator[Query]:
             facts = [f"at({step},{place},{slot})." for step, place, slot in at]
             facts += [f"demand({demand})." for demand in demands]
             found = shown(*(f"violation({rule},{step})" for rule, step in violations))
-            yield Query(("check",), experience.facts() + "".join(facts), found)
+            told = experience.facts() + "".join(facts)
+            yield Query(("check",), told, found, tuple(experience.constants()))
 
 
 def demands() -> Iterator[Query]:
@@ -679,7 +781,7 @@ def statements(
         atoms |= {f"holds({term})" for term, test in tests.items() if test(h)}
         answers.add(((), frozenset(atoms)))
     facts = experience.facts() + "".join(f"ask({term})." for term in tests)
-    yield Query(("topomap", "query"), facts, frozenset(answers))
+    yield Query(("topomap", "query"), facts, frozenset(answers), tuple(experience.constants()))
 
 
 def _so(test: Callable[..., bool], numbers: list[int], h: Hypothesis) -> bool:
@@ -868,7 +970,9 @@ def following() -> Iterator[Query]:
     elsewhere are taken back."""
     draws = [random_experience(random.Random(f"following {seed}"), 9) for seed in range(40)]
     draws += [random_experience(random.Random(f"marked {seed}"), 9, True) for seed in range(24)]
-    draws += [TAKEN_BACK, TAKEN_BACK]
+    draws += [TAKEN_BACK, TAKEN_BACK, *KNOWN.values(), *LOGS.values()]
+    draws += [informed(random.Random(f"following known {seed}"), 6) for seed in range(20)]
+    draws += [logs(random.Random(f"following logs {seed}"), 5) for seed in range(20)]
     for number, experience in enumerate([*(EXPERIENCES | WORLDS).values(), *draws]):
         truth = Truth(experience)
         head, *lines = experience.facts().splitlines()
@@ -880,17 +984,17 @@ def following() -> Iterator[Query]:
         def atoms(at, names=names):
             return frozenset(f"at({names[t]},{names[p]},{s})" for t, (p, s) in enumerate(at))
 
-        def asked(
-            found, *more, parts=(), arguments=(), facts=head, steps=steps, all=("--project",)
-        ):
-            return Query(
-                ("online", *more), facts, frozenset(found), (*all, *arguments), steps,
-                ("step", *parts),
-            )  # fmt: skip
+        all_ = ("--project", *experience.constants())
+
+        def asked(found, *more, parts=(), arguments=(), facts=head, steps=steps, all_=all_):
+            how = (*all_, *arguments)
+            return Query(("online", *more), facts, frozenset(found), how, steps, ("step", *parts))
 
         every, ignore = truth.final, ("--opt-mode=ignore",)
         yield asked([((), atoms(at)) for at in every], arguments=ignore)
         bound, parts = ((None, ("planar",)), (3, ("bound",)), (4, ("bound", "planar")))[number % 3]
+        if experience.starts:  # of several logs it is not followed what is planar
+            bound, parts = 4, ("bound",)
         found = [
             ((), atoms(at))
             for at in truth.having(*parts[-1:] * (parts[-1] == "planar"), bound=bound)
@@ -928,12 +1032,11 @@ def astray(draw, experience):
             steps.append(f"turn({last},{turn}). after({last},{names[-1]}). view({last},0).{told}")
             steps.append(str(last))
         last += 1
-        facts = [f"view({last},{slot})." for slot in sorted(experience.views[step])]
-        facts += [f"landmark({last},{term})." for term in sorted(experience.landmarks[step])]
-        told = experience.drops, experience.picks, experience.markers
-        facts += [f"{n}({last})." for n, of in zip(MARKER, told, strict=True) if step in of]
+        facts = experience.facts_of(step, last)
+        for name in ("same", "apart"):
+            pairs = [pair for pair in getattr(experience, name) if pair[1] == step]
+            facts += [f"{name}({last},{names[one]})." for one, _ in sorted(pairs)]
         if step:
-            facts.append(f"turn({last},{experience.turns[step - 1]}).")
             facts += [f"after({last},{names[-1]})."] * (last - 1 != names[-1])
         names.append(last)
         steps.append(" ".join(facts))
@@ -991,6 +1094,7 @@ SUITES = (
     alone,
     theory,
     marker,
+    knowledge,
     given_up,
     misread,
     circumscription,

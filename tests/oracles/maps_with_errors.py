@@ -2,13 +2,14 @@
 
 import random
 from collections.abc import Iterator
+from dataclasses import replace
 
 from topomap.model.experience import MARKER, Experience
 from topomap.model.facts import parse
 from topomap.model.query import Query
 from topomap.search import traversal
 
-from oracles.worlds import random_experience
+from oracles.worlds import informed, logs, random_experience
 
 At = list[tuple[int, int, int]]
 DEMANDS = ("planar", "bound(3)", "closed", "travelled", "boundary", "perpendicular")
@@ -135,7 +136,22 @@ def drawn(number: int) -> Iterator[tuple[Experience, At]]:
             yield experience, with_errors(draw, experience, at)
 
 
+def contradicting(number: int) -> Iterator[tuple[Experience, At]]:
+    """Hypotheses of what is seen, most of which contradict what is known besides."""
+    for seed in range(number):
+        draw = random.Random(f"contradicting {seed}")
+        experience = (informed if seed % 2 else logs)(draw, 7)
+        bare = replace(experience, compass=(), shifts=(), lengths=(), same=(), apart=(), things=())
+        node = traversal.root(bare, Query())
+        found = [n.dstates for n in traversal.depth_first(node) if n.steps == bare.steps]
+        for at in draw.sample(found, min(3, len(found))):
+            told = [(step, *dstate) for step, dstate in enumerate(at)]
+            yield experience, told
+            yield experience, with_errors(draw, experience, told)
+
+
 # Facts, and the errors that input.lp shows.
+ONE = "slots(4). view(0,0). turn(1,0). view(1,0)."
 INSTANCES = {
     "slots(4). view(0,0).": "",
     "slots(4). view(0,0). view(0,3). turn(1,3). view(1,0). landmark(1,a).": "",
@@ -185,6 +201,50 @@ INSTANCES = {
         "-1,no_step(a) -1,no_step((1,2)) -1,no_step(-1)"
     ),
     "slots(4). view(0,0). drop(1). pick(2). marker(3).": "1,no_step 2,no_step 3,no_step",
+    "slots(4). view(0,0). compass(0,3).": "",
+    "slots(4). view(0,0). compass(0,4).": "0,compass_slot(4)",
+    "slots(4). view(0,0). compass(0,-1).": "0,compass_slot(-1)",
+    "slots(4). view(0,0). compass(0,a).": "0,compass_slot(a)",
+    "slots(4). view(0,0). compass(0,1). compass(0,2).": "0,two_compasses",
+    "slots(4). view(0,0). compass(-1,0).": "-1,no_step(-1)",
+    "slots(4). view(0,0). compass(1,0).": "1,no_step",
+    f"{ONE} shift(1,-3,4). length(1,1).": "",
+    f"{ONE} shift(0,1,1). length(0,1).": "0,shift_at_start 0,length_at_start",
+    f"{ONE} shift(1,1,1). shift(1,1,2). length(1,1). length(1,2).": "1,two_shifts 1,two_lengths",
+    f"{ONE} shift(1,a,2).": "1,no_shift(a)",
+    f"{ONE} shift(1,2,#inf).": "1,no_shift(#inf)",
+    f"{ONE} length(1,0).": "1,no_length(0)",
+    f"{ONE} length(1,-1).": "1,no_length(-1)",
+    f"{ONE} length(1,b).": "1,no_length(b)",
+    f"{ONE} shift(1,-21474836,0). length(1,21474836).": "",
+    f"{ONE} shift(1,0,21474837). length(1,21474837).": "1,far 1,long",
+    f"{ONE} shift(1,-21474837,0).": "1,far",
+    f"{ONE} shift(1,2147483647,2147483647).": "1,far",
+    f"{ONE} turn(2,0). view(2,0). shift(1,21474836,0). shift(2,0,0).": "",
+    f"{ONE} turn(2,0). view(2,0). shift(1,21474836,0). shift(2,0,1).": "2,far",
+    f"{ONE} turn(2,0). view(2,0). shift(2,10737418,-10737418).": "",
+    f"{ONE} same(0,1). apart(1,0). same(1,1).": "",
+    f"{ONE} apart(1,1).": "1,apart_from_itself",
+    f"{ONE} same(0,2).": "2,no_step",
+    f"{ONE} apart(-1,0).": "-1,no_step(-1)",
+    f"{ONE} look(2). view(2,0). start(3). view(3,0).": "",
+    f"{ONE} look(2).": "2,no_view",
+    f"{ONE} start(3). view(3,0).": "2,no_turn",
+    f"{ONE} start(0).": "0,starts_already",
+    f"{ONE} look(0).": "0,no_earlier_look",
+    f"{ONE} start(1).": "1,travels",
+    f"{ONE} look(1).": "1,travels",
+    f"{ONE} start(2). look(2). view(2,0).": "2,start_and_look",
+    f"{ONE} look(2). view(2,0). length(2,5).": "2,no_way(5)",
+    f"{ONE} look(2). view(2,0). shift(2,5,0). turn(3,0). view(3,0).": "",
+    f"{ONE} look(a). start(-1).": "-1,no_step(a) -1,no_step(-1)",
+    f"{ONE} drop(0,a). marker(1,a). drop(1,b).": "",
+    f"{ONE} drop(0,a). drop(1,a).": "1,put_down",
+    f"{ONE} drop(0). drop(1,a).": "",
+    f"{ONE} drop(0,a). pick(1,b).": "1,taken_up",
+    f"{ONE} drop(0,a). marker(1,b).": "1,no_marker",
+    f"{ONE} drop(0,a). pick(1,a). drop(1,a).": "",
+    f"{ONE} marker(a,b).": "-1,no_step(a)",
     "slots(2000000000). turn(2147483647,0).": (
         "-1,many_slots(2000000000) 0,no_view 1,no_turn 2147483647,no_view"
     ),

@@ -5,6 +5,10 @@ map of four slots."""
 import random
 from itertools import combinations, product
 
+from conftest import known
+
+from oracles.brute_force import contradicts
+
 Pair = tuple[int, int, int]  # P, T, S: after step T the agent is at gateway S of P's place
 
 
@@ -14,7 +18,7 @@ class Pairs:
     def __init__(self, experience, found=()):
         self.experience, self.slots = experience, experience.slots
         slots, turns, last = self.slots, (None, *experience.turns), experience.steps
-        self.runs = _runs(experience)
+        self.runs, self.known = _runs(experience), known(experience)
         self.facts = [fact for fact in found if fact[0] in ("new", "never", "apart")]
         self.may = {
             (p, t, s)
@@ -23,16 +27,21 @@ class Pairs:
             for s in range(slots)
             if self._alike(p, t, s)
         }
-        ways = [
-            ((p, t, (turns[p + 1] - turns[t + 1]) % slots), (p + 1, t + 1, 0))
+        # Two pairs, and the two steps that are along one link if either is so.
+        along = [
+            ((p, t, (turns[p + 1] - turns[t + 1]) % slots), (p + 1, t + 1, 0), (p + 1, t + 1))
             for t in range(last)
             for p in range(t)
         ]
-        ways += [
-            ((p - 1, t + 1, turns[p]), (p, t, -turns[t + 1] % slots))
+        along += [
+            ((p - 1, t + 1, turns[p]), (p, t, -turns[t + 1] % slots), (p, t + 1))
             for t in range(last)
             for p in range(1, t + 1)
         ]
+        for one, other, steps in along:
+            if self._unlike(*steps):
+                self.may -= {one, other}
+        ways = [(one, other) for one, other, _ in along]
         # A pair whose partner is none is none itself.
         while gone := {one for pair in ways if not self.may.issuperset(pair) for one in pair}:
             if gone.isdisjoint(self.may):
@@ -48,8 +57,26 @@ class Pairs:
             views[p] == {(s + r) % self.slots for r in views[t]}
             and landmarks[p] == landmarks[t]
             and not any(p in run and t in run for run in self.runs.values())
+            and not self._contradicts(p, t, s)
             and all(holds(fact, self.experience, [(p, t, s)]) for fact in self.facts)
         )
+
+    def _contradicts(self, p: int, t: int, s: int) -> bool:
+        """Whether compass, odometry, or what is told of visits, contradicts such a pair."""
+        experience = self.experience
+        at = [(step, 0) for step in range(experience.steps + 1)]
+        at[t] = p, s
+        known = [fact for fact in self.known if fact[0] not in ("same", "length")]
+        turns = (None, *experience.turns)
+        return contradicts((self.slots, None, turns, None, None, known), at)
+
+    def _unlike(self, t: int, u: int) -> bool:
+        """Whether two steps are too unlike in length to be along one link."""
+        length = {fact[1]: fact[2] for fact in self.known if fact[0] == "length"}
+        if not {t, u} <= length.keys():
+            return False
+        one, other = length[t], length[u]
+        return 100 * abs(one - other) > self.experience.stretch * max(one, other)
 
     def shown(self) -> list[str]:
         """comparable/3, iff/6 and runs_bind/0."""

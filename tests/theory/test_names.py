@@ -11,7 +11,7 @@ from oracles.rule_mutation import closure, named_files, statements
 ROW = re.compile(r"^\| `(\w+)(?:\(([^)]*)\))?` \| (.+?) \| (.+?) \|$", re.MULTILINE)
 MARKER = {"drop", "pick", "marker"}  # their second arity names one of several markers
 RESERVED = {"straight"}
-MOST = 45  # rules of the statement, and of what may lie beyond it
+MOST, BEYOND = 45, 55  # rules of the statement, and of what lies beyond it
 
 
 def glossary():
@@ -109,4 +109,4 @@ def test_the_paper_is_stated_in_forty_five_rules():
     files = [file for file in named_files(ENCODINGS) if file.startswith("paper/")]
     beyond = [file for file in files if file.startswith("paper/beyond/")]
     assert 30 < count(set(files) - set(beyond)) <= MOST
-    assert 0 < count(beyond) <= MOST
+    assert 0 < count(beyond) <= BEYOND
