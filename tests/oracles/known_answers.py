@@ -513,6 +513,9 @@ def misread() -> Iterator[Query]:
     named = [(EXPERIENCES[name], 1) for name in ("same", "lost", "added")]
     named.append((seen("1", "0: 0", "0: 0"), 1))  # and where it stood at first
     nothing = Experience(4, (frozenset(),), (), (frozenset(),))
+    twice = Experience(4, [[0], [0, 1], [0, 1, 2], [0]], [0, None, 1], looks=[2])
+    named += [(twice, 1), (KNOWN["compass"].cut(3), 1), (KNOWN["length"], 1), (TWO, 1)]
+    named += [(KNOWN["odometry, just not"].cut(3), 1), (KNOWN["apart"].cut(3), 1)]
     for experience, most in [*drawn, *named, (CORNERS, 0), (nothing, 1)]:
         ways = list(brute(experience, most))
         for parts in ((), ("closed",), ("minimal",), ("genus", "minimal")):
@@ -525,6 +528,7 @@ def misread() -> Iterator[Query]:
             files = ("topomap", "noise", *parts)
             answers = frozenset((cost, atoms) for cost in said for atoms in said[cost])
             how = () if most == 1 else ("-c", f"noise={most}")
+            how += tuple(experience.constants())
             yield Query(files, experience.facts(), answers, (*how, "--opt-mode=enum,999"))
             best = min(said, default=())
             answers = frozenset((best, atoms) for atoms in said.get(best, ()))

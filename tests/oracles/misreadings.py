@@ -53,7 +53,8 @@ def brute(seen: Experience, most: int):
                 for step, what in misread:
                     (views if isinstance(what, int) else landmarks)[step] ^= {what}
                 stands = all(0 in view for view in views)
-                if stands and all(turn in views[t] for t, turn in enumerate(seen.turns)):
+                leaves = (t for t, turn in enumerate(seen.turns) if turn is not None)
+                if stands and all(seen.turns[t] in views[t] for t in leaves):
                     true = replace(
                         seen,
                         views=tuple(map(frozenset, views)),

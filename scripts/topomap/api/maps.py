@@ -177,6 +177,7 @@ class Map:
             *(self._world, self.at, self._name, self._number, self._many, self.kind),
             whole=self._whole,
             marker=markers(self._corrected, self.at),
+            rests=self._corrected.starts | self._corrected.looks,
         )
 
     def __str__(self) -> str:

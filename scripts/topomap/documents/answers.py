@@ -162,6 +162,8 @@ class Report:
                 head["circumscribe"] = True
             if query.noise is not None:
                 head["noise"] = query.noise
+            if experience.parted:
+                head["rests"] = sorted(experience.starts | experience.looks)
             out.write(json.dumps(formats.headed(head))[:-1] + ', "maps": [')
 
     def add(self, found: Found) -> None:

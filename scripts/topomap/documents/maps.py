@@ -172,6 +172,7 @@ CLAIMS: dict[str, Callable[[Any], bool]] = {
     "optimal": _is_truth,
     "circumscribe": _is_truth,
     "noise": lambda value: value is None or (is_number(value) and value >= 0),
+    "rests": _is_list_of(is_number),
     "kind": lambda kind: kind is None or kind in KINDS,
     "count": is_number,
     "cost": _is_list_of(is_number),

@@ -166,6 +166,9 @@ def faults(
         if not same:
             yield f"{key}: not what at says"
     claims = document.claims
+    rests = sorted(experience.starts | experience.looks)
+    if "rests" in claims and sorted(claims["rests"]) != rests:
+        yield f"rests: they are {rests}"
     last = claims.get("horizon")
     if "horizon" in claims and grown.step != (
         experience.steps if last is None else min(last, experience.steps)

@@ -7,7 +7,7 @@ the directions of one compass, they are.
 """
 
 import random
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -18,6 +18,7 @@ from topomap.drawing.planarize import left_out, planar_part, routed
 from topomap.drawing.springs import STUB
 from topomap.model.topology import Gateway, Place, TopologicalMap
 
+GAP = 1.0  # between components
 SHORTEST = 0.4  # link in a drawing by the compass
 TRIES, LENGTHS = 150, (1, 1, 1, 2, 3)  # of other drawings, and of links in them
 
@@ -44,8 +45,12 @@ class Layout:
 
 
 def layout(world: TopologicalMap, ahead: Gateway | None = None, steps: int = STEPS) -> Layout:
-    """A drawing of a connected map. ``ahead`` is a gateway that is left to the right of the
-    picture (else the first one); fewer ``steps`` do for a small picture."""
+    """A drawing of a map. ``ahead`` is a gateway that is left to the right of the
+    picture (else the first one); fewer ``steps`` do for a small picture. Several components stand
+    side by side, and then no faces are told, for they share the outer one."""
+    parts = world.parts()
+    if len(parts) > 1:
+        return _beside([layout(part, _there(ahead, part), steps) for part in parts])
     part = planar_part(world)
     lines = _by_compass(part) if part is world else None
     if lines is None:
@@ -56,9 +61,35 @@ def layout(world: TopologicalMap, ahead: Gateway | None = None, steps: int = STE
 def straight(world: TopologicalMap, ahead: Gateway | None = None) -> Layout | None:
     """A drawing by the compass, if there is one; of the links that are not in the planar part
     only the beginning and the end, as stubs."""
+    parts = world.parts()
+    if len(parts) > 1:
+        drawn = [straight(part, _there(ahead, part)) for part in parts]
+        laid = [one for one in drawn if one is not None]
+        return _beside(laid) if len(laid) == len(parts) else None
     part = planar_part(world)
     lines = _by_compass(part)
     return None if lines is None else _layout(world, part, lines, ahead)
+
+
+def _there(gateway: Gateway | None, part: TopologicalMap) -> Gateway | None:
+    """The gateway, if it is of this part of a map."""
+    return gateway if gateway is not None and gateway[0] in part.stars else None
+
+
+def _beside(drawings: Sequence[Layout]) -> Layout:
+    """Drawings in a row, from left to right."""
+    places: dict[Place, Points] = {}
+    lines: dict[Gateway, Points] = {}
+    crossing: list[tuple[Gateway, Gateway]] = []
+    right = 0.0
+    for laid in drawings:
+        points = np.concatenate([*laid.lines.values(), *([p] for p in laid.places.values())])
+        shift = np.array([right - points[:, 0].min(), 0.0])
+        places |= {place: point + shift for place, point in laid.places.items()}
+        lines |= {gateway: line + shift for gateway, line in laid.lines.items()}
+        crossing += laid.crossing
+        right += points[:, 0].max() - points[:, 0].min() + GAP
+    return Layout(places, lines, [], -1, crossing)
 
 
 def _layout(

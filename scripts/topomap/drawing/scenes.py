@@ -1,7 +1,7 @@
 """Maps to be shown: those that were found in an instance, or those in a file of maps."""
 
 from collections import Counter, defaultdict
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from pathlib import PurePath
@@ -13,7 +13,6 @@ from topomap.model.experience import MOST_SLOTS, Experience
 from topomap.model.found import Found
 from topomap.model.topology import Gateway, TopologicalMap
 from topomap.model.words import markers, plural, short
-from topomap.runtime import nx
 from topomap.runtime.errors import InputError, printable
 from topomap.runtime.limits import LARGEST
 
@@ -27,7 +26,8 @@ class Scene:
     ``name`` says where it is from. It is map ``number`` of ``many`` (0: how many is not known),
     which are all if ``whole``. ``kind`` says what these maps are; if it is empty, that is not
     known, and they are those that were given. ``caption`` is a title instead of these. ``marker``
-    says where the marker was put down, seen and taken up, if it was.
+    says where the marker was put down, seen and taken up, if it was; ``rests`` are the steps that
+    are no travel.
     """
 
     world: TopologicalMap
@@ -39,6 +39,7 @@ class Scene:
     caption: str = ""
     whole: bool = False
     marker: str = ""
+    rests: Collection[int] = ()
 
     @property
     def title(self) -> str:
@@ -71,12 +72,16 @@ class Scene:
     @property
     def ahead(self) -> Gateway | None:
         """The gateway that is left first, if one is: it leads to the right of a picture."""
-        return self.world.links[self.at[1]] if len(self.at) > 1 else None
+        travels = (arrival for step, arrival in enumerate(self.at[1:], 1) if step not in self.rests)
+        first = next(travels, None)
+        return None if first is None else self.world.links[first]
 
     def steps(self) -> dict[Gateway, list[int]]:
         """The steps that leave by each gateway."""
         found: dict[Gateway, list[int]] = defaultdict(list)
         for step, arrival in enumerate(self.at[1:], 1):
+            if step in self.rests:
+                continue
             found[self.world.links[arrival]].append(step)
         return found
 
@@ -109,6 +114,7 @@ def of_instance(seen: Experience, name: str, document: maps.Document) -> list[Sc
                 *(corrected.map_of(at), at, name, number, many, document.kind),
                 whole=document.whole,
                 marker=markers(corrected, at),
+                rests=corrected.starts | corrected.looks,
             )
         )
     return scenes
@@ -122,6 +128,7 @@ def of_found(experience: Experience, name: str, found: Sequence[Found], whole: b
             *(experience.map_of(one.at), one.at, name, number, len(found), one.kind),
             whole=whole,
             marker=markers(experience, one.at),
+            rests=experience.starts | experience.looks,
         )
         for number, one in enumerate(found, 1)
     ]
@@ -145,19 +152,26 @@ def of_document(document: maps.Document) -> list[Scene]:
         if sorted(step for step, _, _ in entry["at"]) != list(range(len(entry["at"]))):
             raise InputError(f"{where}: the steps of at are not 0, 1, 2, ..., each once")
         at = [(place, slot) for _, place, slot in sorted(entry["at"])]
-        if any(world.links.get(b, (None,))[0] != a[0] for a, b in pairwise(at)):
+        rests = _rests(document)
+        steps = (pair for step, pair in enumerate(pairwise(at), 1) if step not in rests)
+        if any(world.links.get(b, (None,))[0] != a[0] for a, b in steps):
             raise InputError(f"{where}: at goes by links that are not there")
         if at and at[0] not in world.gateways():
             raise InputError(f"{where}: at begins at a gateway that is not there")
         many = len(document.maps)
         rest = name, number, many, document.kind
-        scenes.append(Scene(world, at, *rest, whole=document.whole))
+        scenes.append(Scene(world, at, *rest, whole=document.whole, rests=rests))
     return scenes
+
+
+def _rests(document: maps.Document) -> set[int]:
+    """The steps of a document that are no travel."""
+    return {*document.claims.get("rests", [])}
 
 
 def world_of(slots: int, entry: dict[str, Any], where: str) -> TopologicalMap:
     """The map that ``places`` and ``links`` describe. Raises InputError if that is no map: if
-    it is not connected, or a gateway has two links, or does not exist."""
+    a gateway has two links, or does not exist."""
     try:
         stars = {
             int(place["place"]): frozenset(int(slot) for slot in place["gateways"])
@@ -188,8 +202,4 @@ def world_of(slots: int, entry: dict[str, Any], where: str) -> TopologicalMap:
             )
     if any(not 0 <= slot < slots for star in stars.values() for slot in star):
         raise InputError(f"{where}: a gateway is not from 0 to {slots - 1}")
-    graph = nx.Graph([(a[0], b[0]) for a, b in links.items()])
-    graph.add_nodes_from(stars)
-    if not nx.is_connected(graph):
-        raise InputError(f"{where}: the map is not connected")
     return TopologicalMap(slots, stars, links, landmarks)

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 Node = tuple[Place | Gateway, dict[str, str]]
 Edge = tuple[Place | Gateway, Place | Gateway, dict[str, str]]
-LISTS = {"at", "gateways", "landmarks", "ends", "steps", "back"}  # attributes that are lists
+LISTS = {"at", "rests", "gateways", "landmarks", "ends", "steps", "back"}  # lists
 POINTS, RADIUS = 72, 0.15  # that a link of length 1 takes, in DOT; of a place, in such lengths
 COMMON = {
     "graph": {"inputscale": "72"},  # what says that positions are in points
@@ -42,7 +42,8 @@ STUB = {"shape": "point", "width": "0.06"}
 def graph_of(scene: Scene) -> "nx.MultiGraph[int]":
     """The map as a graph.
 
-    Of the graph ``at`` is the route, ``[[T,P,S], ...]``; of a node the attributes are its
+    Of the graph ``at`` is the route, ``[[T,P,S], ...]``, and ``rests`` are the steps of it that are no
+    travel, if there are any; of a node the attributes are its
     ``gateways`` and ``landmarks``; of an edge its ``ends``, two gateways ``[P,S]``, and the
     ``steps`` that travel it from the first to the second, and ``back``.
     """
@@ -54,6 +55,8 @@ def graph_of(scene: Scene) -> "nx.MultiGraph[int]":
         genus=world.genus(),
         at=steps_json(scene.at),
     )
+    if scene.rests:
+        graph.graph["rests"] = sorted(scene.rests)
     for place, star in world.stars.items():
         signs = sorted(world.landmarks.get(place, ()))
         graph.add_node(place, gateways=sorted(star), landmarks=signs)

@@ -57,6 +57,8 @@ def _document(file: str, graph: "nx.Graph[Any]") -> str:
         "bound": None,
         "optimal": kind in maps.BEST,
     }
+    if "rests" in given:
+        claims["rests"] = given["rests"]
     (scene,) = of_document(maps.document(file, {**claims, "maps": [entry], "kind": kind}))
     if not scene.at:
         raise InputError(f"{file}: no route in it")
@@ -74,7 +76,7 @@ def _document(file: str, graph: "nx.Graph[Any]") -> str:
 
 def _told(graph: "nx.Graph[Any]") -> str:
     """What a graph says of a map, but for names: other tools may add what they like."""
-    whole = [graph.graph.get(key) for key in ("slots", "genus", "at")]
+    whole = [graph.graph.get(key) for key in ("slots", "genus", "at", "rests")]
     places = [
         [place, *(attributes.get(key) for key in ("gateways", "landmarks"))]
         for place, attributes in graph.nodes.items()

@@ -149,22 +149,40 @@ class TopologicalMap:
         """Genus by the Euler-Poincare formula: the sum of those of the components."""
         bare = len(self.stars) - len({place for place, _ in self.links})
         faces = bare + (len(self.faces()) if self.links else 0)
-        return (2 * self.components() - len(self.stars) + len(self.links) // 2 - faces) // 2
+        return (2 * len(self.components()) - len(self.stars) + len(self.links) // 2 - faces) // 2
 
-    def components(self) -> int:
-        """How many components the map has: one, unless it is of several logs."""
-        ends: dict[Place, set[Place]] = {place: set() for place in self.stars}
+    def components(self) -> list[list[Place]]:
+        """The places of each component: there is one, unless the map is of several logs."""
+        ends: dict[Place, dict[Place, None]] = {place: {} for place in self.stars}
         for (place, _), (other, _) in self.links.items():
-            ends[place].add(other)
-        left, number = set(ends), 0
-        while left:
-            number += 1
-            waiting = [left.pop()]
-            while waiting:
-                near = ends[waiting.pop()] & left
-                left -= near
-                waiting += near
-        return number
+            ends[place][other] = None
+        parts: list[list[Place]] = []
+        seen: set[Place] = set()
+        for start in self.stars:
+            if start in seen:
+                continue
+            seen.add(start)
+            for place in (part := [start]):
+                near = [other for other in ends[place] if other not in seen]
+                seen.update(near)
+                part += near
+            parts.append(part)
+        return parts
+
+    def parts(self) -> list["TopologicalMap"]:
+        """The components, each as a map."""
+        components = self.components()
+        if len(components) == 1:
+            return [self]
+        return [
+            TopologicalMap(
+                self.slots,
+                {place: self.stars[place] for place in part},
+                {out: end for out, end in self.links.items() if out[0] in {*part}},
+                {place: signs for place, signs in self.landmarks.items() if place in {*part}},
+            )
+            for part in components
+        ]
 
     def isomorphic(self, other: "TopologicalMap") -> bool:
         """Whether the maps are one up to the names of places and the slot in which

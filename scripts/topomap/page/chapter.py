@@ -40,7 +40,8 @@ def given_maps(file: str, path: str, whole: Experience, query: Query) -> list[Sc
                 raise InputError(f"{where}: it disbelieves what was seen; the page is of all of it")
             at = beginning(where, entry["at"], whole, cut, demands)
             rest = path, number, many, document.kind
-            made.append(Scene(cut.map_of(at), at, *rest, whole=document.whole))
+            rests = cut.starts | cut.looks
+            made.append(Scene(cut.map_of(at), at, *rest, whole=document.whole, rests=rests))
     if len({scene.at for scene in made}) < len(made):
         raise InputError(f"{file}: a map is there twice")
     if not made:
@@ -167,6 +168,7 @@ class Chapter:
                 parts = (shapes.part_of(whole, world) for whole in grown if whole)
                 drawn = next((part for part in parts if part), None)
                 if drawn is None:
-                    drawn = shapes.drawing(world, Scene(world, at, self.name).ahead, small=True)
+                    scene = Scene(world, at, self.name, rests=self.seen.starts | self.seen.looks)
+                    drawn = shapes.drawing(world, scene.ahead, small=True)
                 self._keep(at, drawn)
                 yield

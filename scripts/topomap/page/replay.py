@@ -94,7 +94,7 @@ def _go_on(node: Hypothesis, children: list[Cube], after: Step) -> None:
     at = node.dstates
     children += [(*at, divmod(arrival, node.slots)) for arrival, rule in tried if rule is None]
     after.tried.update(rule or "" for _, rule in tried)
-    after.foreseen += len(tried) == 1 and node.out() in node.links
+    after.foreseen += len(tried) == 1 and not node.rests and node.out() in node.links
     if all(rule for _, rule in tried):  # the last one is the link's end, or a new place
         after.ended[tried[-1][1] or ""] += 1
 

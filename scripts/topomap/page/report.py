@@ -216,7 +216,8 @@ def _shown(about: Chapter, at: Cube, number: int, glyphs: Glyphs) -> dict[str, A
     from markupsafe import Markup
 
     seen, drawn, step = about.seen, about.shapes[at], len(at) - 1
-    scene = Scene(seen.map_of(at), at, about.name)
+    rests = seen.starts | seen.looks
+    scene = Scene(seen.map_of(at), at, about.name, rests=rests)
     known = len(glyphs.names)
     body = svg.body(scene, drawn)
     content = _last(drawn, at) + glyphs.use(body) + svg.agent(drawn, at[-1])

@@ -89,7 +89,8 @@ class BranchingNode:
 def branching(node: Hypothesis, watch: Watch) -> Iterator[BranchingNode]:
     """The branching nodes of a planar tree, step by step."""
     for _ in breadth_first(node, watch):
-        if node.steps < node.experience.steps and node.out() not in node.links:
+        last = node.steps == node.experience.steps
+        if not last and not node.rests and node.out() not in node.links:
             watch.found += 1
             yield _branching(node)
 
