@@ -7,6 +7,7 @@
 #                 follow, questions, the start and solve take, docs/{online,asking,start,solve}.md (an hour;
 #                 BENCH: options, such as BENCH='--only 8x8', BENCH=--quick, BENCH=--help)
 # make figures    draw the pictures of the pages again, docs/figures/
+# make knowledge  count what a compass and odometry leave, docs/knowledge.md and its picture (an hour)
 # make simulate   let robots explore twenty worlds, docs/simulations.json (seconds)
 # make circumscription   compare both readings of the preference, docs/circumscription.md
 #                 (twenty minutes)
@@ -25,7 +26,8 @@ MAKERS  := $(wildcard scripts/topomap/worlds/*.py) $(addprefix scripts/topomap/m
              experience.py topology.py)
 PIP     := $(BIN)/python -m pip --quiet --disable-pip-version-check
 
-.PHONY: all table instances batch test test-long mutate lint figures bench beyond circumscription simulate clean \
+.PHONY: all table instances batch test test-long mutate lint figures bench beyond circumscription simulate \
+        knowledge clean \
         committed anew
 .DELETE_ON_ERROR:
 
@@ -109,6 +111,9 @@ circumscription: $(TOOLS)
 
 beyond: $(SETUP)
 	$(BIN)/topomap table --beyond --resume --output docs/beyond.json
+
+knowledge: $(TOOLS)
+	PYTHONPATH=tests $(BIN)/python -m bench.knowledge
 
 simulate: $(SETUP)
 	$(BIN)/topomap simulate list instances/worlds.txt --json --output docs/simulations.json
