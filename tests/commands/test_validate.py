@@ -16,7 +16,7 @@ from hypothesis import strategies as st
 from oracles.instance_faults import KINDS, corrupted, errors
 from test_cli import BAD
 from topomap import cli
-from topomap.model.facts import HINT, SIGNATURES, parse, read
+from topomap.model.facts import HINT, NAMED, SIGNATURES, parse, read
 from topomap.runtime.errors import InputError, printable
 from topomap.worlds.environment import grid, lattice, maze
 from topomap.worlds.instance import instance
@@ -149,17 +149,38 @@ def test_what_was_meant_is_told(judged, fact, fault):
 def test_the_page_tells_each_form():
     page = (ROOT / "docs/writing-instances.md").read_text()
     rows = "".join(re.findall(r"^\| (`.*?) \|", page, re.M))
-    assert re.findall("`(.*?)`", rows) == [*SIGNATURES.values()]
+    told = re.findall("`(.*?)`", rows)
+    assert [form for form in told if form not in NAMED.values()] == [*SIGNATURES.values()]
+    assert {*NAMED.values()} <= {*told}
 
 
 def test_each_form_is_read_as_it_is_told():
     """The forms in messages are facts, once their letters are values."""
-    values = {"K": "4", "T": "0", "S": "0", "L": "a"}
-    facts = [re.sub("[KTSL]", lambda match: values[match[0]], form) for form in SIGNATURES.values()]
-    facts.remove("turn(0,0)")
-    facts.remove("pick(0)")
-    seen = parse(". ".join(facts) + ". turn(1,0). view(1,0). pick(1).", "made")
-    assert (seen.drops, seen.markers, seen.picks) == ({0}, {0}, {1})
+    values = {
+        "K": "4",
+        "T": "1",
+        "S": "0",
+        "L": "a",
+        "U": "0",
+        "X": "3",
+        "Y": "4",
+        "D": "5",
+        "M": "m",
+    }
+    forms = [*SIGNATURES.values(), *NAMED.values()]
+    facts = [re.sub("[A-Z]", lambda match: values[match[0]], form) for form in forms]
+    rest = {
+        "start(1)": "start(2)",
+        "look(1)": "look(3)",
+        "pick(1)": "pick(2)",
+        "pick(1,m)": "pick(2,m)",
+    }
+    facts = [rest.get(fact, fact) for fact in facts if not fact.startswith("apart")]
+    seen = parse(". ".join([*facts, *(f"view({step},0)" for step in (0, 2, 3))]) + ".", "made")
+    assert (seen.drops, seen.markers, seen.picks) == ({1}, {1}, {2})
+    assert (seen.starts, seen.looks, seen.same) == ({2}, {3}, {(0, 1)})
+    assert (seen.compass[1], seen.shifts[0], seen.lengths[0]) == (0, (3, 4), 5)
+    assert seen.things == {("drop", 1, "m"), ("pick", 2, "m"), ("marker", 1, "m")}
 
 
 def test_many_faults_are_cut_short(judged):

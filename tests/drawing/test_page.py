@@ -163,7 +163,7 @@ def refusals(seen, at, planar, perpendicular, bound):
         return marked((place, slot))
 
     def marked(arrival):
-        return None if oracle.marked(plain(seen)[-1], (*at, arrival)) else "marker"
+        return None if oracle.marked(plain(seen)[-2], (*at, arrival)) else "marker"
 
     def broken(arrival):
         child = (*at, arrival)

@@ -149,6 +149,9 @@ class Follower:
         length: int | None = None,
         same: Iterable[int] = (),
         apart: Iterable[int] = (),
+        start: bool = False,
+        look: bool = False,
+        things: Iterable[tuple[str, str]] = (),
         watch: Watch | None = None,
     ) -> FollowerStatus:
         """Go a step on.
@@ -164,6 +167,10 @@ class Follower:
             shift: how far this step moved the agent, as (x, y), in whole numbers of any unit.
             length: how long this step was, in whole units.
             same, apart: earlier steps after which the agent was at this place, or at another one.
+            start: whether a new log of the same world begins here; then there is no turn.
+            look: whether it is no travel but a second look; then there is no turn.
+            things: what is done with markers that have names: ``("drop", "coin")``, or ``"pick"``,
+                ``"marker"``.
             watch: that of a command; then the time limit is not used.
 
         Returns:
@@ -187,6 +194,11 @@ class Follower:
             for name, of in lists.items()
             if (given := [*collection(name, of)])
         }
+        data |= {
+            name: True for name, told in (("start", start), ("look", look)) if flag(name, told)
+        }
+        if done := [list(thing) for thing in collection("things", things)]:
+            data["things"] = done
         data |= {} if turn is None else {"turn": integer("turn", turn)}
         for _ in self.take(self.record.with_object(data)):
             pass

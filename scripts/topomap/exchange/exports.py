@@ -43,8 +43,9 @@ def graph_of(scene: Scene) -> "nx.MultiGraph[int]":
     """The map as a graph.
 
     Of the graph ``at`` is the route, ``[[T,P,S], ...]``, and ``rests`` are the steps of it that are
-    no travel, if there are any; of a node the attributes are its ``gateways`` and ``landmarks``; of an edge its ``ends``, two gateways ``[P,S]``, and the
-    ``steps`` that travel it from the first to the second, and ``back``.
+    no travel, if there are any; of a node the attributes are its ``gateways`` and ``landmarks``; of
+    an edge its ``ends``, two gateways ``[P,S]``, and the ``steps`` that travel it from the first to
+    the second, and ``back``.
     """
     world = scene.world
     graph: nx.MultiGraph[int] = nx.MultiGraph(

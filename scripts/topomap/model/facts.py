@@ -28,7 +28,7 @@ from topomap.model.experience import (
 from topomap.model.terms import STRING, cut_short, ground, quoted
 from topomap.runtime import files
 from topomap.runtime.errors import InputError
-from topomap.runtime.limits import LARGEST
+from topomap.runtime.limits import DRIFT, LARGEST, STRETCH
 
 SIGNATURES = {  # the facts of an instance
     "slots": "slots(K)",
@@ -56,7 +56,7 @@ def read(
     """The experience in an instance file; a ``noisy`` one may turn to gateways that were not
     seen, and views may lack slot 0; shifts and lengths may be wrong by ``drift`` and ``stretch``
     percent. Raises InputError, one line, on bad input: the first of the faults that
-    ``Facts.faults`` finds, or what is too large for clingo."""
+    ``Facts.faults`` finds."""
     return parse(files.read_text(path), str(path), noisy, drift, stretch)
 
 
@@ -68,13 +68,12 @@ def parse(
     stretch: int | None = None,
 ) -> Experience:
     """The experience in the text of an instance; ``source`` names it in errors."""
-    facts = Facts()
+    facts = Facts(
+        drift=DRIFT if drift is None else drift, stretch=STRETCH if stretch is None else stretch
+    )
     for fault in facts.faults(text, noisy):
         raise InputError(fault.of(source))
-    experience = facts.experience().within(drift, stretch)
-    if too_large := unmeasured(experience):
-        raise InputError(too_large.of(source))
-    return experience
+    return facts.experience()
 
 
 @dataclass(frozen=True)
@@ -104,7 +103,9 @@ class Facts:
     holds the numbers that are told by compass/2, shift/3 or length/2, and ``pairs[name]`` the
     pairs of same/2 or apart/2, as they are told; ``rests[name]`` the steps of start/1 or look/1,
     and ``things`` what is done with markers that have names. ``unread`` is the number of statements
-    that are no facts of an instance.
+    that are no facts of an instance. ``drift`` and ``stretch`` are the
+    percents that shifts and lengths may be wrong by: what is told must be numbers of clingo when it
+    is multiplied by them.
     """
 
     slots: dict[int, int] = field(default_factory=dict)
@@ -122,6 +123,8 @@ class Facts:
     things: dict[Thing, int] = field(default_factory=dict)
     steps: dict[int, int] = field(default_factory=dict)
     unread: int = 0
+    drift: int = DRIFT
+    stretch: int = STRETCH
 
     def faults(self, text: str, noisy: bool = False) -> Iterator[Fault]:
         """Read a text, and tell all that is wrong with it: first each statement that is no fact,
@@ -211,6 +214,7 @@ class Facts:
                 if marks and (fault := marker_fault(marks, out[name], name)):
                     yield Fault(fault, min(marks.values()), step, lacks=True)
                 out[name] = marker_out(marks, out[name])
+        yield from self._far()
 
     def _marks(self, name: str | None, step: int) -> dict[str, int]:
         """What is done with a marker after a step, each with its line."""
@@ -274,8 +278,28 @@ class Facts:
         for (length,), line in self.known["length"].get(step, {}).items():
             if length <= 0:
                 yield Fault(f"length {length} is not above 0", line, step)
+            most = LARGEST // max(100, self.stretch)
+            if length > most:
+                said = f"length {length} is above {most}, the most with this stretch"
+                yield Fault(said, line, step)
         if told_apart := self.pairs["apart"].get((step, step)):
             yield Fault("it is told to be of another place than itself", told_apart, step)
+
+    def _far(self) -> Iterator[Fault]:
+        """The first step up to which the shifts are too much."""
+        most = LARGEST // max(100, self.drift)
+        told = {*self.turns, *(step for steps in self.rests.values() for step in steps)}
+        sums, step = {0}, 1
+        while step in told:
+            if shifts := self.known["shift"].get(step):
+                more = {n + abs(x) + abs(y) for n in sums for x, y in shifts}
+                sums = {n for n in more if n <= most}
+                if not sums:
+                    said = f"the shifts up to here come to {min(more)}"
+                    said += f"; with this drift they may come to {most}"
+                    yield Fault(said, min(shifts.values()), step)
+                    return
+            step += 1
 
     def experience(self) -> Experience:
         """The experience that the facts make, if they have no fault."""
@@ -296,6 +320,8 @@ class Facts:
             starts=rests["start"],
             looks=rests["look"],
             things=self.things,
+            drift=self.drift,
+            stretch=self.stretch,
         )
 
     def _each(self, name: str, steps: range) -> list[Any]:
@@ -304,11 +330,6 @@ class Facts:
         return (
             [one[0] if one and len(one) == 1 else one for one in told] if self.known[name] else []
         )
-
-
-def unmeasured(seen: Experience) -> Fault | None:
-    """Which step's shift or length clingo's numbers do not hold, if there is one."""
-    return range_fault(seen.shifts, seen.lengths, seen.drift, seen.stretch)
 
 
 def range_fault(

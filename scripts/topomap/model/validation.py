@@ -11,7 +11,7 @@ from typing import Any
 
 from topomap.model import words
 from topomap.model.experience import Experience
-from topomap.model.facts import Facts, Fault, unmeasured
+from topomap.model.facts import Facts, Fault
 from topomap.runtime import files
 from topomap.runtime.errors import InputError
 
@@ -38,9 +38,6 @@ def judged(path: str) -> dict[str, Any]:
     warnings: list[Fault] = []
     if not faults:
         seen = facts.experience()
-        if fault := unmeasured(seen):
-            faults = [fault]
-    if not faults:
         warnings = [*strange(seen, facts)]
         told |= {"valid": True, "steps": seen.steps, "slots": seen.slots}
         told["views"] = len({*zip(seen.views, seen.landmarks, strict=True)})

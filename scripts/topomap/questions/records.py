@@ -252,7 +252,8 @@ class Record:
         """The record with what a JSON object says: a step, whole, or how many to take back.
         Raises LineFault."""
         begins = self.slots is None
-        known = {"slots" if begins else "turn", "view", "landmarks", *MARKER, *KNOWN_KEYS}
+        known = {"slots" if begins else "turn", "view", "landmarks", "things", *MARKER, *KNOWN_KEYS}
+        known |= set() if begins else {*RESTS}
         if data.keys() == {"undo"}:
             if not is_number(data["undo"]):
                 raise LineFault("undo: a whole number is wanted")
@@ -263,9 +264,8 @@ class Record:
                 raise LineFault(f"{cut_short(json.dumps(key))}: not one of {known_keys}")
         first = "slots" if begins else "turn"
         rests = [name for name in RESTS if data.get(name)]
-        known |= {*RESTS, "things"}
-        if (not begins and not self.steps) or rests:
-            first, known = "view", known - {"turn"}
+        if (not begins and not self.steps) or (rests and "turn" not in data):
+            first = "view"
         for key in dict.fromkeys((first, "view")):
             if key not in data:
                 raise LineFault(f"{key} is missing")
@@ -310,6 +310,8 @@ class Record:
             if value is not None and not _fits(name, value):
                 raise LineFault(f"{name}: {KNOWN_KEYS[name]} is wanted")
             for other in value or () if name in PAIRS else ():
+                if other > step:
+                    raise LineFault(f"{name}: step {other} is later than step {step}")
                 record = record._paired(name, other, step)
             if value is not None and name not in PAIRS:
                 record = record._known(step, name, tuple(value) if name == "shift" else value)
