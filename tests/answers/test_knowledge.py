@@ -8,16 +8,22 @@ from dataclasses import replace
 
 import clingo
 import pytest
-from conftest import ENCODINGS, PARTS, TRIED, Truth, answers, forms
+import topomap
+from bench.knowledge import ASKED, WORLDS, counted, experience
+from conftest import ENCODINGS, PARTS, ROOT, TRIED, Truth, answers, forms
 from oracles.brute_force import certain
 from oracles.worlds import informed, logs, told
 from topomap.documents.check import by_definition, by_rules
+from topomap.model.experience import Experience, observe
 from topomap.model.query import Query
 from topomap.runtime.watch import Watch
 from topomap.search.descent import Descent
 from topomap.search.traversal import depth_first, root
 from topomap.solver import phases
 from topomap.solver.online import OnlineSolver
+from topomap.worlds.environment import grid
+from topomap.worlds.instance import instance
+from topomap.worlds.senses import Senses
 
 
 def searched(experience, **asked):
@@ -137,3 +143,145 @@ def test_many_random_worlds(block):
     for number in range(300):
         agree(informed(random.Random(f"many informed {block}/{number}"), 10))
         agree(logs(random.Random(f"many logs {block}/{number}"), 8))
+
+
+@pytest.mark.parametrize("kind", [informed, logs])
+def test_why(kind):
+    """Verdicts are those of brute force, and reasons are verified by the explainer itself."""
+    for number in range(20):
+        draw = random.Random(f"why {number}")
+        seen = kind(draw, 6)
+        maps = [h.at for h in Truth(seen).final.values()]
+        t, u = draw.randrange(seen.steps + 1), draw.randrange(seen.steps + 1)
+        same = {at[t][0] == at[u][0] for at in maps}
+        found = topomap.explain(seen, f"same({t},{u})")
+        wanted = "no map"
+        if maps:
+            wanted = "open" if len(same) == 2 else "certain" if True in same else "impossible"
+        assert (found.verdict, found.complete) == (wanted, True), seen.facts()
+        for reason in found.explanation.reasons:
+            TRIED[f"reasons told: {reason.kind}"] += 1
+
+
+def test_words():
+    """What is said of each kind of reason."""
+    ring = Experience(4, [[0, 1], [0, 3], [0, 3], [0, 3], [0, 3]], [0, 3, 3, 3])
+    for changed, statement, words in (
+        (
+            {"compass": [0, 1, 0, 3, 0]},
+            "same(0,4)",
+            "points to compass slot 0 after step 0, and to 0",
+        ),
+        (
+            {"shifts": [(10, 0), (0, 10), (-3, 0), (0, -10)]},
+            "same(0,4)",
+            "step 4 is at least 3.7 units from step 0 by its odometry: 7 were measured, on a way "
+            "of 33, wrong by 10 % at most",
+        ),
+        ({"apart": [(0, 4)]}, "same(0,4)", "have been at two places after steps 0 and 4"),
+        (
+            {"same": [(0, 4)]},
+            "not same(0,4)",
+            "have been at one place after steps 0 and 4",
+        ),
+    ):
+        found = topomap.explain(replace(ring, **changed), statement)
+        assert any(words in line for line in found.lines()), [*found.lines()]
+    back = Experience(4, [[0], [0, 2], [0]], [0, 0], lengths=[100, 50])
+    told = [*topomap.explain(back).lines()]
+    assert any("steps 1 and 2 would go by one link, and are 100 and 50" in one for one in told)
+    looks = Experience(4, [[0], [0, 1], [0, 1, 2]], [0, None], looks=[2])
+    told = [*topomap.explain(looks).lines()]
+    assert any("the second look of step 2" in one for one in told), told
+    coin = Experience(4, [[0], [0, 1], [0]], [0, 0], things=[("drop", 0, "coin")])
+    told = [*topomap.explain(coin).lines()]
+    assert any("does not see the marker coin, which lies at place 0" in one for one in told), told
+
+
+def test_what_is_assumed():
+    """Only the maps in which a statement holds are left, in each way to ask for them."""
+    seen = topomap.read(ROOT / "instances/grid-3x3-snake.lp")
+    every = Truth(seen).final
+    few = {at for at, h in every.items() if len(h.stars) < 9 and at[0][0] != at[8][0]}
+    told = topomap.assume(seen, "places < 9", "not same(0,8)")
+    assert (told.apart, told.assumed) == ({(0, 8)}, {("least(place,9)", False)})
+    assert {one.at for one in topomap.solve(told)} == few
+    assert {one.at for one in topomap.solve(told, jobs=2)} == few
+    asked = topomap.ask(told, "places < 9", "same(0,8)", "planar")
+    assert [one.holds for one in asked][:2] == ["all", "none"]
+    assert topomap.explain(told, "same(0,8)").verdict == "impossible"
+    assert topomap.explain(topomap.assume(seen, "places < 3")).verdict == "no map"
+    best = topomap.solve(topomap.assume(seen, "not planar"), optimal=True)
+    assert all(one.genus for one in best)
+    with pytest.raises(topomap.InputError, match="slot 7"):
+        topomap.assume(seen, "pending(0,7)")
+
+
+PAGE = {  # semantics.md, "A compass" and "Odometry": all maps, planar ones, closed, both
+    "3x3 a compass": (16, 12, 1, 1),
+    "3x3 odometry, drift 5": (24, 14, 2, 1),
+    "3x3 odometry, drift 10": (24, 14, 2, 1),
+    "3x3 odometry, drift 20": (39, 29, 2, 1),
+    "3x3 drift 10 and a compass": (16, 12, 1, 1),
+    "3x4 a compass": (112, 54, 2, 1),
+    "3x4 odometry, drift 5": (180, 58, 4, 1),
+    "3x4 odometry, drift 10": (264, 87, 4, 1),
+    "3x4 odometry, drift 20": (459, 138, 8, 1),
+    "3x4 drift 10 and a compass": (80, 43, 1, 1),
+    "4x4 a compass": (6688, 661, 24, 1),
+    "4x4 odometry, drift 5": (2592, 237, 16, 1),
+    "4x4 odometry, drift 10": (58920, 3303, 384, 1),
+    "4x4 odometry, drift 20": (105228, 5878, 416, 1),
+    "4x4 drift 10 and a compass": (6688, 661, 24, 1),
+}
+
+
+@pytest.mark.parametrize("row", PAGE)
+def test_the_figures_of_the_page(row):
+    """By clingo, and where they are few by the search, too (``counted`` demands it)."""
+    name, _, known = row.partition(" ")
+    ((_, size, route),) = [world for world in WORLDS if world[0] == name]
+    seen = experience(size, route, known)
+    found = tuple(counted(seen, parts, 300) for parts in ASKED.values())
+    assert found == PAGE[row]
+
+
+def test_the_table_of_the_page():
+    """docs/knowledge.md has these figures."""
+    text = (ROOT / "docs/knowledge.md").read_text(encoding="utf-8")
+    for row, (every, planar, closed, both) in PAGE.items():
+        name, _, known = row.partition(" ")
+        assert f"| {name} | {known} | {every:,} ({closed:,}) | {planar:,} ({both:,}) |" in text
+    for row in ("| 5x5 | a compass | not settled (362,880) |",):
+        assert row in text
+
+
+def test_two_logs_of_the_3x3_grid():
+    """And two halves of the 4x4 snake, cut at step 15: by brute force."""
+    world = grid(3, 3).map
+    one, _ = observe(world, ((0, 0), 1), [1, 1, 2, 2])
+    other, _ = observe(world, ((2, 0), 1), [1, 0, 0, 3])
+    both = Experience(
+        4, [*one.views, *other.views], [*one.turns, None, *other.turns], starts=[one.steps + 1]
+    )
+    truth = Truth(both)
+    assert {found.at for found in topomap.solve(both)} == {*truth.final}
+    for parts in (("planar",), ("closed",), ("planar", "perpendicular")):
+        answer = topomap.solve(both, **dict.fromkeys(parts, True))
+        assert {found.at for found in answer} == truth.having(*parts)
+    assert any(len(h.parts()) > 1 for h in truth.final.values())
+    assert any(len(h.parts()) == 1 for h in truth.final.values())
+
+
+@pytest.mark.long
+def test_two_halves_of_the_4x4_snake():
+    whole = instance(grid(4, 4), "snake").experience
+    views = [*whole.views[:16], *whole.views[15:]]  # the second log begins where the first ends
+    turns = [*whole.turns[:15], None, *whole.turns[15:]]
+    north = instance(grid(4, 4), "snake", senses=Senses(compass=True)).experience.compass
+    north = [*north[:16], *north[15:]]
+    halves = Experience(4, views, turns, starts=[16], compass=north)
+    truth = Truth(halves)
+    assert {found.at for found in topomap.solve(halves)} == {*truth.final}
+    planar = topomap.solve(halves, planar=True)
+    assert {found.at for found in planar} == truth.having("planar")

@@ -19,7 +19,7 @@ import pytest
 from conftest import BIN, ROOT, answers, lacking, plain, run
 from matplotlib.path import Path as Outline
 from oracles import brute_force as oracle
-from oracles.worlds import WORLDS, random_experience
+from oracles.worlds import WORLDS, informed, random_experience
 from topomap import cli
 from topomap.drawing import shapes, svg
 from topomap.drawing.agreement import Agreement
@@ -149,6 +149,15 @@ def test_words_of_turns():
     assert words.listed(range(10), 3) == "0, 1, 2 and 7 more"
 
 
+DENIED = {  # by which facts what is known besides views refuses an arrival, in order
+    "compass": "compass",
+    "odometry": "shift",
+    "apart": "apart",
+    "same": "same",
+    "length": "length",
+}
+
+
 def refusals(seen, at, planar, perpendicular, bound):
     """Where the next step may arrive, and the rule that refuses it, from the definitions."""
     before = oracle.Hypothesis(plain(seen), at)
@@ -163,7 +172,14 @@ def refusals(seen, at, planar, perpendicular, bound):
         return marked((place, slot))
 
     def marked(arrival):
-        return None if oracle.marked(plain(seen)[-2], (*at, arrival)) else "marker"
+        if not oracle.marked(plain(seen)[-2], (*at, arrival)):
+            return "marker"
+        *rest, told = plain(seen)
+        for rule, fact in DENIED.items():
+            alone = [one for one in told if one[0] in (fact, "drift", "stretch")]
+            if alone and oracle.contradicts((*rest, alone), (*at, arrival)):
+                return rule
+        return None
 
     def broken(arrival):
         child = (*at, arrival)
@@ -186,7 +202,8 @@ def refusals(seen, at, planar, perpendicular, bound):
 def test_what_is_refused_is_what_the_definitions_refuse(record_property):
     draw = random.Random("refused")
     drawn = (random_experience(draw, 9, marker=number % 2 > 0) for number in range(60))
-    experiences = [*WORLDS.values(), *drawn]
+    more = (informed(random.Random(f"refused {number}"), 8) for number in range(160))
+    experiences = [*WORLDS.values(), *drawn, *more]
     rules = Counter()
     for seen in experiences:
         planar, perpendicular = draw.random() < 0.4, draw.random() < 0.3
@@ -231,7 +248,8 @@ def test_what_is_refused_of_each_hypothesis():
     """As the definitions have it, and as the search has it."""
     draws = random.Random("of each")
     drawn = (random_experience(draws, 8, marker=number % 2 > 0) for number in range(20))
-    some = [*WORLDS.values(), *drawn]
+    more = (informed(random.Random(f"of each {number}"), 8) for number in range(160))
+    some = [*WORLDS.values(), *drawn, *more]
     rules = Counter()
     for seen in some:
         planar, perpendicular = draws.random() < 0.5, draws.random() < 0.5

@@ -212,17 +212,17 @@ class Hypothesis:
         """The first rule of ``evidence`` by which the next step does not arrive there, or None."""
         evidence, step = self.evidence, self.steps + 1
         place, slot = divmod(gateway, self.slots)
+        rules = set()
         for visit in self.visits.get(place, ()):
             turn = (slot - self.at[visit]) % self.slots
-            if rule := evidence.refuses(visit, step, turn):
-                return rule
-        for earlier in evidence.same.get(step, ()):
-            if self.at[earlier] // self.slots != place:
-                return "same"
-        if not evidence.lengths or self.rests:
-            return None
-        along = self.steps_along.get(min(self.out(), gateway), ())
-        return "length" if any(evidence.unequal(other, step) for other in along) else None
+            rules.add(evidence.refuses(visit, step, turn))
+        if any(self.at[earlier] // self.slots != place for earlier in evidence.same.get(step, ())):
+            rules.add("same")
+        if evidence.lengths and not self.rests:
+            along = self.steps_along.get(min(self.out(), gateway), ())
+            if any(evidence.unequal(other, step) for other in along):
+                rules.add("length")
+        return next((rule for rule in KNOWN if rule in rules), None)
 
     def allowed(self, arrivals: Iterable[int]) -> list[int]:
         """Those gateways that agree with what the next step sees of the marker, and with what is
