@@ -18,7 +18,7 @@ import signal
 import sys
 import tomllib
 from collections import Counter
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Container, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import groupby, product
 from pathlib import Path
@@ -40,6 +40,7 @@ KINDS = ("remove", "drop", "negate", "shift")
 FATES = ("survived", "killed", "refused", "endless", "larger")
 SECONDS = 5  # of the processor, for one query: the encodings take milliseconds
 BYTES = 2 << 30
+ENOUGH = 1500  # queries, in an order drawn at random, for a mutant that is proved to be equivalent
 HEAD = """# Rule mutation
 
 Written by `make mutate`, with clingo {clingo} and Python {python}.
@@ -47,14 +48,15 @@ Written by `make mutate`, with clingo {clingo} and Python {python}.
 A mutant is an encoding changed in one place: a statement removed; a literal of a body or of a
 condition dropped; one negated, or a comparison turned into its complement; a number made one
 greater or one less. Mutants that read the same are one. Each is asked the queries of
-`tests/oracles/known_answers.py` that load it, whose answers are known without the encodings. It is
-*killed* when one gives other answers (other models, shown atoms or costs, or a model twice),
-*refused* when clingo has an error or a message for it, *endless* when a query takes more than
-{seconds} seconds of the processor or {memory} MiB of memory. (If the encoding without the change
-gives other answers too, the run ends with an error.) When all answers are right, a mutant of an
-encoding whose worth is in its size, too, is *larger* if it grounds to more rules, over all named
-experiences with all the parts and some of what `phases/` and `online/` are asked. Another one is
-*equivalent* if `tests/oracles/equivalent.toml` says why, and has *survived* if not. Comments,
+`tests/oracles/known_answers.py` that load it, whose answers are known without the encodings: at
+first {enough:,} of them, drawn at random. It is *killed* when one gives other answers (other models,
+shown atoms or costs, or a model twice), *refused* when clingo has an error or a message for it,
+*endless* when a query takes more than {seconds} seconds of the processor or {memory} MiB of memory.
+(If the encoding without the change gives other answers too, the run ends with an error.) When these
+answers are right, a mutant of an encoding whose worth is in its size, too, is *larger* if it grounds
+to more rules, over all named experiences with all the parts and some of what `phases/` and `online/`
+are asked. Another one is *equivalent* if `tests/oracles/equivalent.toml` says why. Any other one is
+asked all the queries, and has *survived* if all answers are right. Comments,
 `#include` and `#heuristic`, which is but an order of the search, are not mutated.
 """
 COMPLEMENT = {
@@ -270,9 +272,15 @@ def suffer(programs: Programs, whole: Programs, asked: list[Query]) -> str:
 
 
 def fates(
-    folder: Path, chosen: list[Mutant], asked: list[Query], measured: list[Query], jobs: int
+    folder: Path,
+    chosen: list[Mutant],
+    asked: list[Query],
+    measured: list[Query],
+    jobs: int,
+    proved: Container[Key] = (),
 ) -> Iterator[tuple[Mutant, str]]:
-    """The fate of each mutant, as they come, each in a process of its own."""
+    """The fate of each mutant, as they come, each in a process of its own. One that survives ENOUGH
+    queries, and is neither larger nor ``proved`` to be equivalent, is asked all the others."""
     loaded = sets(folder, asked + measured)
     names = set().union(*loaded.values())
     texts = {file: list(map(str, statements(folder, file))) for file in names}
@@ -302,7 +310,7 @@ def fates(
                         if mutant.file in every
                     }
                     mine = [query for query in asked if query.files in mutated]
-                    fate = suffer(mutated, whole, mine)
+                    fate = suffer(mutated, whole, mine[:ENOUGH])
                     if fate == "survived" and mutant.file in lean:
                         signal.setitimer(signal.ITIMER_PROF, SECONDS * len(measured))
                         more = sum(
@@ -311,6 +319,8 @@ def fates(
                             if query.files in mutated
                         )
                         fate = "larger" if more > 0 else fate
+                    if fate == "survived" and mutant.key not in proved:
+                        fate = suffer(mutated, whole, mine[ENOUGH:])
                     code = FATES.index(fate) if fate else len(FATES) + 1
                 finally:
                     os._exit(code)
@@ -405,6 +415,7 @@ def report(fate: dict[Mutant, str], reasons: dict[Key, str]) -> str:
             python=platform.python_version(),
             seconds=SECONDS,
             memory=BYTES >> 20,
+            enough=ENOUGH,
         ),
         f"| encoding | {' | '.join((*KINDS, 'all', *FATES, 'equivalent'))} |",
         "|---|" + "--:|" * (len(KINDS) + len(FATES) + 2),
@@ -471,7 +482,7 @@ def main(
             chosen = random.Random(options.seed).sample(chosen, min(options.sample, len(chosen)))
 
         def tried(left: list[Mutant]) -> Iterator[tuple[Mutant, str]]:
-            return fates(folder, left, asked(), measured(), options.jobs)
+            return fates(folder, left, asked(), measured(), options.jobs, reasons)
 
         trials = tried(chosen)
         if options.known:
