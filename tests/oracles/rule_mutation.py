@@ -49,15 +49,16 @@ A mutant is an encoding changed in one place: a statement removed; a literal of 
 condition dropped; one negated, or a comparison turned into its complement; a number made one
 greater or one less. Mutants that read the same are one. Each is asked the queries of
 `tests/oracles/known_answers.py` that load it, whose answers are known without the encodings: at
-first {enough:,} of them, drawn at random. It is *killed* when one gives other answers (other models,
-shown atoms or costs, or a model twice), *refused* when clingo has an error or a message for it,
-*endless* when a query takes more than {seconds} seconds of the processor or {memory} MiB of memory.
-(If the encoding without the change gives other answers too, the run ends with an error.) When these
-answers are right, a mutant of an encoding whose worth is in its size, too, is *larger* if it grounds
-to more rules, over all named experiences with all the parts and some of what `phases/` and `online/`
-are asked. Another one is *equivalent* if `tests/oracles/equivalent.toml` says why. Any other one is
-asked all the queries, and has *survived* if all answers are right. Comments,
-`#include` and `#heuristic`, which is but an order of the search, are not mutated.
+first {enough:,} of them, drawn at random. It is *killed* when one gives other answers (other
+models, shown atoms or costs, or a model twice), *refused* when clingo has an error or a message
+for it, *endless* when a query takes more than {seconds} seconds of the processor or {memory} MiB
+of memory. (If the encoding without the change gives other answers too, the run ends with an
+error.) When these answers are right, a mutant of an encoding whose worth is in its size, too, is
+*larger* if it grounds to more rules, over all named experiences with all the parts and some of
+what `phases/` and `online/` are asked. Another one is *equivalent* if
+`tests/oracles/equivalent.toml` says why. Any other one is asked all the queries, and has
+*survived* if all answers are right. Comments, `#include` and `#heuristic`, which is but an order
+of the search, are not mutated.
 """
 COMPLEMENT = {
     ast.ComparisonOperator.Equal: ast.ComparisonOperator.NotEqual,
