@@ -141,9 +141,9 @@ class Follower:
         turn: int | None = None,
         landmarks: Iterable[str] = (),
         *,
-        drop: bool = False,
-        pick: bool = False,
-        marker: bool = False,
+        drop: bool | str = False,
+        pick: bool | str = False,
+        marker: bool | str = False,
         compass: int | None = None,
         shift: tuple[int, int] | None = None,
         length: int | None = None,
@@ -151,7 +151,6 @@ class Follower:
         apart: Iterable[int] = (),
         start: bool = False,
         look: bool = False,
-        things: Iterable[tuple[str, str]] = (),
         watch: Watch | None = None,
     ) -> FollowerStatus:
         """Go a step on.
@@ -162,15 +161,14 @@ class Follower:
             turn: the slot of the gateway by which the agent left where it was before, clockwise
                 of the one where it stood; None for the first view, where the exploration starts.
             landmarks: the landmarks that are seen, as terms of clingo, such as ``"a"``.
-            drop, pick, marker: whether the marker is put down here, is taken up, is seen.
+            drop, pick, marker: whether the marker is put down here, is taken up, is seen; of a
+                marker that has a name, the name.
             compass: the compass slot to which the gateway stood at points.
             shift: how far this step moved the agent, as (x, y), in whole numbers of any unit.
             length: how long this step was, in whole units.
             same, apart: earlier steps after which the agent was at this place, or at another one.
             start: whether a new log of the same world begins here; then there is no turn.
             look: whether it is no travel but a second look; then there is no turn.
-            things: what is done with markers that have names: ``("drop", "coin")``, or ``"pick"``,
-                ``"marker"``.
             watch: that of a command; then the time limit is not used.
 
         Returns:
@@ -197,8 +195,6 @@ class Follower:
         data |= {
             name: True for name, told in (("start", start), ("look", look)) if flag(name, told)
         }
-        if done := [list(thing) for thing in collection("things", things)]:
-            data["things"] = done
         data |= {} if turn is None else {"turn": integer("turn", turn)}
         for _ in self.take(self.record.with_object(data)):
             pass

@@ -89,7 +89,7 @@ def add_senses(add: Any) -> None:
         type=number(float, 0, 1000),
         metavar="PERCENT",
         help="note how far each step led, with errors of at most so many percent of the way, drawn "
-        "with --seed; the truth is consistent with as large a --drift",
+        "with --seed; the truth is consistent with that --drift, rounded up to a whole number",
     )
     add("--lengths", action="store_true", help="note how long each step was")
 

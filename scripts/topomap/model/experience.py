@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Container, Iterable
 from dataclasses import dataclass, fields
-from typing import TypeVar
+from typing import Any, TypeVar
 
 from topomap.model.terms import spelt
 from topomap.model.topology import Gateway, Place, TopologicalMap
@@ -94,9 +94,9 @@ class Experience:
         views: Iterable[Iterable[int]],
         turns: Iterable[int | None],
         landmarks: Iterable[Iterable[str]] | None = None,
-        drops: Iterable[int] = (),
-        picks: Iterable[int] = (),
-        markers: Iterable[int] = (),
+        drops: Iterable[int | tuple[int, str]] = (),
+        picks: Iterable[int | tuple[int, str]] = (),
+        markers: Iterable[int | tuple[int, str]] = (),
         *,
         compass: Iterable[int | None] = (),
         shifts: Iterable[Shift | None] = (),
@@ -118,7 +118,8 @@ class Experience:
             views: the slots that are seen after each step, from 0.
             turns: the turn of each step, from 1, in slots clockwise.
             landmarks: the landmarks that are seen after each step, from 0; by default none.
-            drops, picks, markers: the steps after which the marker is put down, taken up, seen.
+            drops, picks, markers: the steps after which the marker is put down, taken up, seen; of
+                a marker that has a name, such as ``(4, "coin")``, the step and the name.
             compass: the compass slot of the gateway stood at after each step, from 0, or None; by
                 default none is told.
             shifts: how far each step, from 1, moved the agent, as (x, y) in whole numbers of any
@@ -130,8 +131,8 @@ class Experience:
             starts: the steps, from 1, at which a new log of the same world begins.
             looks: the steps, from 1, that are no travel but a second look. The turn of a step of
                 either kind is None.
-            things: what is done with markers that have names: ``("drop", step, name)``, or
-                ``"pick"``, ``"marker"``; a name is a term, as a landmark is.
+            things: what is done with markers that have names, once more, as it is kept:
+                ``("drop", step, name)``, or ``"pick"``, ``"marker"``; a name is a term of clingo.
 
         Raises:
             ValueError: there is not one view more than turns, or not as many sets of landmarks;
@@ -153,10 +154,18 @@ class Experience:
         if not len(done) + 1 == len(seen) == len(signs):
             told = f"{len(seen)} views, {len(done)} turns, landmarks after {len(signs)} steps"
             raise ValueError(f"{told}: of n turns there are n + 1 views")
-        marks = [
-            frozenset(whole(f"{name}: step", step, 0, len(done)) for step in collection(name, of))
-            for name, of in (("drops", drops), ("picks", picks), ("markers", markers))
-        ]
+        marks: list[frozenset[int]] = []
+        named: list[Any] = []
+        for kind, name, of in zip(
+            MARKER, ("drops", "picks", "markers"), (drops, picks, markers), strict=True
+        ):
+            alone = []
+            for mark in collection(name, of):
+                if isinstance(mark, tuple | list):
+                    named.append((kind, *mark))
+                else:
+                    alone.append(whole(f"{name}: step", mark, 0, len(done)))
+            marks.append(frozenset(alone))
         many = len(seen)
         rests = [
             frozenset(whole(f"{name}: step", step, 1, len(done)) for step in collection(name, of))
@@ -172,13 +181,11 @@ class Experience:
         measured = _each("lengths", lengths, many - 1, integer)
         pairs = [_pairs(name, of, len(done)) for name, of in (("same", same), ("apart", apart))]
         percents = whole("drift", drift, 0), whole("stretch", stretch, 0)
+        every = [_thing(thing, len(done)) for thing in [*named, *collection("things", things)]]
         values = (
             *(integer("slots", slots), seen, done, signs, *marks),
             *(north, moved, measured, *pairs, *percents, frozenset(assumed)),
-            *(
-                *rests,
-                frozenset(_thing(thing, len(done)) for thing in collection("things", things)),
-            ),
+            *(*rests, frozenset(every)),
         )
         for one, value in zip(fields(self), values, strict=True):
             object.__setattr__(self, one.name, value)

@@ -252,7 +252,7 @@ class Record:
         """The record with what a JSON object says: a step, whole, or how many to take back.
         Raises LineFault."""
         begins = self.slots is None
-        known = {"slots" if begins else "turn", "view", "landmarks", "things", *MARKER, *KNOWN_KEYS}
+        known = {"slots" if begins else "turn", "view", "landmarks", *MARKER, *KNOWN_KEYS}
         known |= set() if begins else {*RESTS}
         if data.keys() == {"undo"}:
             if not is_number(data["undo"]):
@@ -274,7 +274,7 @@ class Record:
             raise LineFault("view: a list of slots is wanted")
         if not isinstance(landmarks, list) or not all(isinstance(one, str) for one in landmarks):
             raise LineFault("landmarks: a list of terms, as text, is wanted")
-        for name in (*MARKER, *RESTS):
+        for name in RESTS:
             if not isinstance(data.get(name, False), bool):
                 raise LineFault(f"{name}: true or false is wanted")
         if first != "view" and not is_number(data[first]):
@@ -298,13 +298,14 @@ class Record:
                     told = cut_short(json.dumps(term))
                     raise LineFault(f"landmarks: {told} is not a ground term")
                 record = record._with(fact)
-        for name in MARKER:
-            if data.get(name):
-                record = record._seen(step, mark=name)
+        for kind in MARKER:
+            for which in _names(kind, data.get(kind, False)):
+                if which is None:
+                    record = record._seen(step, mark=kind)
+                else:
+                    record = record._with_thing(step, kind, which)
         for name in rests:
             record = record._rested(step, name)
-        for kind, term in _things(data.get("things", [])):
-            record = record._with_thing(step, kind, term)
         for name in KNOWN_KEYS:
             value = data.get(name)
             if value is not None and not _fits(name, value):
@@ -320,17 +321,20 @@ class Record:
         return record._marked()._measured()
 
 
-def _things(value: Any) -> list[tuple[str, str]]:
-    """What is done with markers that have names: lists of two texts, such as ["drop", "coin"]."""
-    found = []
+def _names(kind: str, value: Any) -> list[str | None]:
+    """Which markers are put down, taken up or seen: true means the one that has no name, a text one
+    that has, and a list several."""
+    found: list[str | None] = []
     for one in value if isinstance(value, list) else [value]:
-        whole = isinstance(one, list) and len(one) == 2 and all(isinstance(x, str) for x in one)
-        if not whole or one[0] not in MARKER:
-            raise LineFault('things: a list of such as ["drop", "coin"] is wanted')
-        try:
-            found.append((one[0], spelt(one[1])))
-        except ValueError as fault:
-            raise LineFault(f"things: {fault}") from None
+        if isinstance(one, bool):
+            found += [None] * one
+        elif isinstance(one, str):
+            try:
+                found.append(spelt(one))
+            except ValueError as fault:
+                raise LineFault(f"{kind}: {fault}") from None
+        else:
+            raise LineFault(f"{kind}: true or false is wanted, or the names of markers")
     return found
 
 
