@@ -215,6 +215,57 @@ def test_what_is_assumed():
     assert all(one.genus for one in best)
     with pytest.raises(topomap.InputError, match="slot 7"):
         topomap.assume(seen, "pending(0,7)")
+    with pytest.raises(topomap.InputError, match="one place with itself"):
+        topomap.assume(seen, "not same(3,3)")
+    assert topomap.assume(seen, "same(3,3)") == seen
+
+
+def test_what_is_assumed_is_a_reason():
+    """Without it there would be a map, so an explanation names it, in the words of a statement."""
+    seen = topomap.read(ROOT / "instances/grid-3x3-snake.lp")
+    for statement, words in {
+        "places < 3": "taken for granted: places < 3",
+        "not path(0,0,1,0)": "taken for granted: not path(0,0,1,0)",
+        "pending != 3": None,
+    }.items():
+        told = topomap.explain(topomap.assume(seen, statement))
+        assert (told.verdict == "no map") == (words is not None), statement
+        assert words is None or [one for one in told.lines() if words in one], [*told.lines()]
+
+
+def test_who_does_not_ask_the_encodings_refuses_what_is_assumed():
+    seen = topomap.read(ROOT / "instances/grid-3x3-snake.lp")
+    told = topomap.assume(seen, "places < 9")
+    maps = list(topomap.solve(told, limit=1))
+    for call in (
+        lambda: topomap.solve(told, by="search"),
+        lambda: topomap.solve(told, encoding="paper"),
+        lambda: topomap.count(told),
+        lambda: topomap.check(told, maps),
+    ):
+        with pytest.raises(ValueError, match="taken for granted"):
+            call()
+    with pytest.raises(ValueError, match="assumed"):
+        Experience(4, [[0]], [], assumed=["planar"])
+    with pytest.raises(ValueError, match="assumed"):
+        Experience(4, [[0]], [], assumed=[("planar(", True)])
+
+
+def test_a_marker_may_have_any_name():
+    """The marker that has no name is none of those that have one, whatever they are called."""
+    for name in ("()", "unnamed", "none", "named(x)", '"a b"', "0"):
+        seen = Experience(4, [[0, 1]] * 5, [1] * 4, drops=[1, (0, name)], markers=[(4, name)])
+        found = Truth(seen).final.keys()
+        assert {at[4][0] for at in found} == {0}
+        for by in ("clingo", "search"):
+            assert {one.at for one in topomap.solve(seen, by=by)} == found, (name, by)
+        follower = topomap.follow(4)
+        for step, view in enumerate(seen.views):
+            drop = {0: name, 1: True}.get(step, False)
+            marker = name if step == 4 else False
+            turn = None if step == 0 else 1
+            status = follower.step(sorted(view), turn, drop=drop, marker=marker)
+        assert status.hypotheses == len(found)
 
 
 PAGE = {  # semantics.md, "A compass" and "Odometry": all maps, planar ones, closed, both

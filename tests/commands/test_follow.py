@@ -217,7 +217,7 @@ BAD = [
     ("drop(1). turn(2,0). view(2,0). drop(2).", "step 2: the marker is put down, but lies"),
     ("drop(1,0,0).", "drop(1,0,0): drop has 1 argument, drop(T), or 2 with a name"),
     ("drop(1,a). drop(1,b). turn(2,0). view(2,0). drop(2,a).", "step 2: the marker a is put down,"),
-    ("pick(a).", "pick(a): a step or a slot is a whole number"),
+    ("pick(a).", "pick(a): a step is a whole number"),
     ('{"turn": 0, "view": [0], "drop": 1}', "drop: true or false is wanted"),
     ('{"turn": 0, "view": [0], "pick": true}', "step 2: the marker is taken up, but lies nowhere"),
     ("undo(2).", "undo of 2 steps: to take back: 1 step"),

@@ -89,7 +89,7 @@ FAULTS = {  # and all that is said of them
         "3: 'turn(1,0) view(1,0)' is not a ground fact (is a full stop missing?)",
         "4: view(2): view has 2 arguments, view(T,S)",
         "5: 'a :- b' is not a ground fact",
-        "6: turn(2,x): a step or a slot is a whole number",
+        "6: turn(2,x): a step and a slot are whole numbers",
         "5: step 1: slot 9 is not in 0..3",
         MORE,
     ],

@@ -177,7 +177,7 @@ def test_maps_that_clash_with_it_are_not_sound(topomap, instance, tmp_path):
         ("drop(0). pick(1). marker(2).", "step 2: the marker is seen, but lies nowhere"),
         ("drop(3).", "step 3: it has no turn (the last one is 2)"),
         ("marker(-1).", "step -1: steps are numbered from 0"),
-        ("pick(a).", "1: pick(a): a step or a slot is a whole number"),
+        ("pick(a).", "1: pick(a): a step is a whole number"),
         (
             "drop(0,1,2).",
             ":1: drop(0,1,2): drop has 1 argument, drop(T), or 2 with a name, drop(T,M)",

@@ -3,6 +3,7 @@
 from topomap.api.parts import demand_experience, demand_text
 from topomap.model.experience import Experience
 from topomap.questions.statements import parse_statement
+from topomap.runtime.errors import InputError
 
 
 def assume(experience: Experience, *statement: str) -> Experience:
@@ -39,6 +40,8 @@ def assumed(command: str, experience: Experience, statement: "tuple[str, ...]") 
                 pair = [(one, other)]
                 known = {"same": pair} if said.positive else {"apart": pair}
                 experience = experience.knowing(**known)
-                continue
+            elif not said.positive:
+                raise InputError(f'{command}: "{said.text}": a visit is of one place with itself')
+            continue
         experience = experience.granted(said.term, said.positive)
     return experience

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping
 from typing import Any, Unpack
 
 from topomap.api.maps import Map
-from topomap.api.parts import Parts, begin, path_of, query_of
+from topomap.api.parts import Parts, begin, demand_pairs, path_of, query_of
 from topomap.documents import maps as read
 from topomap.documents.maps import Document
 from topomap.documents.verdicts import Judged, verdicts
@@ -61,6 +61,7 @@ def check(
     if truth is not None and not isinstance(truth, TopologicalMap):
         raise TypeError(f"truth: a TopologicalMap is wanted, not {shown(truth)}")
     documents = _documents(maps)
+    demand_pairs(experience, "check")
     watch = begin(experience, timeout, noise is not None or read.noisy(documents))
     return check_under(watch, experience, documents, query, truth)
 

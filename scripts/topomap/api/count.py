@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Mapping
 from typing import Any, Literal, Unpack, overload
 
-from topomap.api.parts import Parts, begin, query_of
+from topomap.api.parts import Parts, begin, demand_pairs, query_of
 from topomap.model.experience import Experience
 from topomap.model.query import Query
 from topomap.model.reply import Reply
@@ -98,6 +98,7 @@ def count(
     query = query_of(parts, bound=bound, horizon=horizon, allowed=DEMANDS)
     circumscribe = flag("circumscribe", circumscribe)
     jobs = whole("jobs", jobs, 1)
+    demand_pairs(experience, "count")
     watch = begin(experience, timeout)
     with crew_of(jobs) as crew:
         return count_under(watch, experience, query, Journal(), crew, circumscribe)

@@ -186,7 +186,9 @@ class Follower:
         data |= {"drop": drop, "pick": pick, "marker": marker}
         known = {"compass": compass, "length": length}
         data |= {name: integer(name, one) for name, one in known.items() if one is not None}
-        lists = {"shift": shift or (), "same": same, "apart": apart}
+        if shift is not None:
+            data["shift"] = [integer("shift", one) for one in collection("shift", shift)]
+        lists = {"same": same, "apart": apart}
         data |= {
             name: [integer(name, one) for one in given]
             for name, of in lists.items()

@@ -89,6 +89,14 @@ def demand_experience(experience: object) -> None:
         raise TypeError(f"an Experience is wanted, which topomap.read(path) gives, not {told}")
 
 
+def demand_pairs(experience: object, where: str) -> None:
+    """Raises ValueError if more is taken for granted than which visits are of one place: the rest
+    is put to the encodings, and what ``where`` names does not ask them."""
+    if isinstance(experience, Experience) and experience.assumed:
+        known = "same(T,U) and not same(T,U)"
+        raise ValueError(f"{where} knows no statement that is taken for granted but {known}")
+
+
 def begin(experience: Experience, timeout: float | None, noisy: bool = False) -> Watch:
     """The watch of a call, once an experience that may have been made in Python is checked. Raises
     TypeError if it is no experience; InputError, one line, if it cannot be, where ``noisy``

@@ -4,7 +4,7 @@ from collections.abc import Generator
 from typing import Unpack
 
 from topomap.api.answer import Answer
-from topomap.api.parts import Parts, begin, query_of
+from topomap.api.parts import Parts, begin, demand_pairs, query_of
 from topomap.model.experience import Experience
 from topomap.model.found import Found
 from topomap.model.query import Query
@@ -82,6 +82,10 @@ def solve(
         raise ValueError("jobs: all maps are shared out, not the best ones")
     if noise is not None and by == "search":
         raise ValueError("noise does not go with by='search'")
+    if by == "search":
+        demand_pairs(experience, "by='search'")
+    if encoding == "paper":
+        demand_pairs(experience, "encoding='paper'")
     watch = begin(experience, None, noise is not None)
 
     def coming() -> Generator[Found, None, None]:

@@ -6,6 +6,8 @@ from typing import Any
 
 from topomap.api.parts import path_of
 from topomap.model import validation
+from topomap.runtime.checks import whole
+from topomap.runtime.limits import DRIFT, STRETCH
 
 
 @dataclass(frozen=True)
@@ -49,16 +51,20 @@ class Validation:
         return "\n".join(self.lines())
 
 
-def validate(path: str | Path) -> Validation:
+def validate(path: str | Path, *, drift: int = DRIFT, stretch: int = STRETCH) -> Validation:
     """Judge an instance file.
 
     Parameters:
         path: the file; ``-`` is standard input.
+        drift, stretch: how far shifts and lengths may be wrong, in percent: what is too large for
+            clingo's numbers depends on them.
 
     Returns:
         What is wrong with it, and warnings. A file that cannot be read has one fault.
 
     Raises:
         TypeError: no path.
+        ValueError: a percent that is no whole number from 0.
     """
-    return Validation(validation.judged(path_of(path)))
+    percents = whole("drift", drift, 0), whole("stretch", stretch, 0)
+    return Validation(validation.judged(path_of(path), *percents))

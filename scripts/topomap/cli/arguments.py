@@ -51,7 +51,8 @@ def number(kind: type, least: float, most: float = LARGEST) -> Any:
         except ValueError:
             value = math.nan
         if not least <= value <= most:
-            bounds = f"{least} or more" if most >= LARGEST else f"from {least} to {most}"
+            least_only = most >= LARGEST and not value > most
+            bounds = f"{least} or more" if least_only else f"from {least} to {most}"
             noun = "a whole number" if kind is int else "a number"
             raise argparse.ArgumentTypeError(f"{text!r} is not {noun}, {bounds}")
         return value

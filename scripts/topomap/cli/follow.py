@@ -50,7 +50,7 @@ what is certain: new(T), the place where the agent is after step T was not visit
         help="with standard input: write each line to FILE before it is answered; if FILE has "
         "lines already, go on after them",
     )
-    add("--planar", action="store_true", help=PARTS["planar"])
+    add("--planar", action="store_true", help=f"{PARTS['planar']}; of one log only (no start)")
     add("--bound", type=number(int, 1), metavar="B", help="at most B places")
     add(
         "--marker",

@@ -3,7 +3,7 @@
 import argparse
 from typing import Any
 
-from topomap.cli.arguments import command
+from topomap.cli.arguments import add_measured, command
 from topomap.runtime import formats
 from topomap.runtime.errors import printable
 from topomap.runtime.status import BAD_INPUT, DONE
@@ -21,6 +21,7 @@ def add(group: Any) -> None:
     )
     add = made.add_argument
     add("file", nargs="+", metavar="FILE", help="an instance; - is standard input")
+    add_measured(made)
     add("--json", action="store_true", help="write JSON")
 
 
@@ -28,7 +29,9 @@ def run(args: argparse.Namespace) -> int:
     """Tell of each file what is wrong with it; status 2 if anything is."""
     from topomap.api.validate import validate
 
-    judged = map(validate, args.file)
+    given = {"drift": args.drift, "stretch": args.stretch}
+    measured = {name: value for name, value in given.items() if value is not None}
+    judged = (validate(path, **measured) for path in args.file)
     if args.json:
         whole = list(judged)
         print(formats.line({"files": [one.document() for one in whole]}), end="")

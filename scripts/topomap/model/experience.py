@@ -127,7 +127,8 @@ class Experience:
             lengths: how long each step was, in whole units, or None; by default none is told.
             same, apart: pairs of steps after which the agent was at one place, or at two.
             drift, stretch: how far shifts and lengths may be wrong, in percent.
-            assumed: what ``topomap.assume`` has added.
+            assumed: what ``topomap.assume`` has added: statements, as terms that
+                ``encodings/query.lp`` knows, each with whether it holds.
             starts: the steps, from 1, at which a new log of the same world begins.
             looks: the steps, from 1, that are no travel but a second look. The turn of a step of
                 either kind is None.
@@ -184,7 +185,7 @@ class Experience:
         every = [_thing(thing, len(done)) for thing in [*named, *collection("things", things)]]
         values = (
             *(integer("slots", slots), seen, done, signs, *marks),
-            *(north, moved, measured, *pairs, *percents, frozenset(assumed)),
+            *(north, moved, measured, *pairs, *percents, _assumed(assumed)),
             *(*rests, frozenset(every)),
         )
         for one, value in zip(fields(self), values, strict=True):
@@ -200,13 +201,9 @@ class Experience:
         """The experience up to and including step ``horizon``."""
         marks = {
             name: frozenset(step for step in getattr(self, name) if step <= horizon)
-            for name in ("drops", "picks", "markers")
+            for name in ("drops", "picks", "markers", "starts", "looks")
         }
-        marks |= {
-            name: frozenset(step for step in getattr(self, name) if step <= horizon)
-            for name in ("starts", "looks")
-        }
-        marks["things"] = frozenset(thing for thing in self.things if thing[1] <= horizon)
+        things = frozenset(thing for thing in self.things if thing[1] <= horizon)
         pairs = {
             name: frozenset(pair for pair in getattr(self, name) if max(pair) <= horizon)
             for name in ("same", "apart")
@@ -218,6 +215,7 @@ class Experience:
             compass=_told(self.compass[: horizon + 1]),
             shifts=_told(self.shifts[:horizon]),
             lengths=_told(self.lengths[:horizon]),
+            things=things,
             **marks,
             **pairs,
         )
@@ -244,11 +242,13 @@ class Experience:
         ``encodings/query.lp`` holds, or does not."""
         return self._but(assumed=self.assumed | {(term, holds)})
 
-    def assumptions(self) -> str:
-        """What is taken for granted, as facts and rules beside ``encodings/query.lp``."""
+    def assumptions(self, as_reasons: bool = False) -> str:
+        """What is taken for granted, as facts and rules beside ``encodings/query.lp``; as reasons
+        that may be given up, ``broken(assumed(N))`` is of statement N of ``sorted(assumed)``."""
         return "".join(
-            f"ask({term}). :- {'not ' * holds}holds({term}).\n"
-            for term, holds in sorted(self.assumed)
+            f"ask({term}). {f'broken(assumed({number})) ' * as_reasons}"
+            f":- {'not ' * holds}holds({term}).\n"
+            for number, (term, holds) in enumerate(sorted(self.assumed))
         )
 
     def constants(self) -> list[str]:
@@ -256,6 +256,10 @@ class Experience:
         told = [f"drift={self.drift}"] * bool(self.shifts)
         told += [f"stretch={self.stretch}"] * bool(self.lengths)
         return [option for one in told for option in ("-c", one)]
+
+    def compass_told(self) -> int:
+        """Of how many visits the compass is told."""
+        return sum(slot is not None for slot in self.compass)
 
     def then(self, step: Step) -> "Experience":
         """The experience with one more step, of which the caller has seen to it that it can be."""
@@ -307,6 +311,17 @@ class Experience:
             frozenset(step for kind, step, other in self.things if (kind, other) == (mark, name))
             for mark in MARKER
         )
+
+    def put_down(self) -> dict[str | None, int]:
+        """The markers that lie somewhere after the last step, each with the step after which it was
+        put down. (Taking up comes before putting down.)"""
+        told = {}
+        for name in self.names():
+            drops, picks, _ = self.marks_of(name)
+            down = max(drops, default=-1)
+            if down >= max(picks, default=0):
+                told[name] = down
+        return told
 
     def marker(self, name: str | None = None) -> tuple[tuple[int, bool] | None, ...]:
         """For each step at whose end a marker lies somewhere: after which step it was put
@@ -465,6 +480,17 @@ def _turns(given: Iterable[int | None]) -> tuple[int | None, ...]:
         turn if turn is None or type(turn) is int else integer("turns: slot", turn)
         for turn in collection("turns", given)
     )
+
+
+def _assumed(given: Iterable[tuple[str, bool]]) -> frozenset[tuple[str, bool]]:
+    """Statements that are taken for granted, each a term, and whether it holds."""
+    told = set()
+    for one in collection("assumed", given):
+        if isinstance(one, str) or len(one) != 2 or not isinstance(one[1], bool):
+            raise ValueError(f"assumed: {shown(one)} is not such as ('same(3,12)', True)")
+        (term,) = _terms("assumed", [one[0]])
+        told.add((term, one[1]))
+    return frozenset(told)
 
 
 def _thing(given: Thing, last: int) -> Thing:

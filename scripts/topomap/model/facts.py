@@ -44,6 +44,12 @@ SIGNATURES = {  # the facts of an instance
     "start": "start(T)",
     "look": "look(T)",
 }
+WHOLE = {  # of the other facts, the steps are such numbers
+    "slots": "K is a whole number",
+    **dict.fromkeys(("view", "turn", "compass"), "a step and a slot are whole numbers"),
+    "shift": "a step, and how far it moved, are whole numbers",
+    "length": "a step and its length are whole numbers",
+}
 NAMED = {name: f"{name}(T,M)" for name in MARKER}  # of markers that have names
 RESTS = ("start", "look")  # steps that are no travel
 PAIRS = ("same", "apart")
@@ -227,8 +233,9 @@ class Facts:
         turns = self.turns.get(step, {})
         rests = {name: self.rests[name][step] for name in RESTS if step in self.rests[name]}
         if rests and step == 0:
-            said = "it is the start already" if "start" in rests else "there is no earlier look"
-            yield Fault(said, min(rests.values()), step)
+            for name, line in rests.items():
+                said = "it is the start already" if name == "start" else "there is no earlier look"
+                yield Fault(said, line, step)
         elif rests and turns:
             said = "it has a turn, but begins a log" if "start" in rests else "a look has no turn"
             yield Fault(said, min(rests.values()), step)
@@ -379,8 +386,7 @@ def misfit(fact: clingo.Symbol, forms: Mapping[str, str] = SIGNATURES) -> str | 
         return f"{text} is not a fact over {every}"
     numbers = arguments[:1] if name == "landmark" else arguments
     if any(argument.type != clingo.SymbolType.Number for argument in numbers):
-        what = "a shift or a length" if name in ("shift", "length") else "a slot"
-        return f"{text}: a step or {what} is a whole number"
+        return f"{text}: {WHOLE.get(name, 'a step is a whole number')}"
     return None
 
 

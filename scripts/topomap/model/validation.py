@@ -14,6 +14,7 @@ from topomap.model.experience import Experience
 from topomap.model.facts import Facts, Fault
 from topomap.runtime import files
 from topomap.runtime.errors import InputError
+from topomap.runtime.limits import DRIFT, STRETCH
 
 MOST = 1000  # faults of a file that are told in JSON
 SHOWN = 50  # the same in lines
@@ -26,9 +27,9 @@ START = (
 )
 
 
-def judged(path: str) -> dict[str, Any]:
-    """What is to be told of a file."""
-    facts = Facts()
+def judged(path: str, drift: int = DRIFT, stretch: int = STRETCH) -> dict[str, Any]:
+    """What is to be told of a file, where shifts and lengths may be wrong by these percents."""
+    facts = Facts(drift=drift, stretch=stretch)
     told: dict[str, Any] = {"file": path, "valid": False}
     told |= dict.fromkeys(("steps", "slots", "views", "landmarks"))
     try:
@@ -83,6 +84,10 @@ def strange(seen: Experience, facts: Facts) -> Iterator[Fault]:
         said = "there is no turn(1), so the place where the agent starts is never left"
         yield Fault(said, facts.steps[0], 0)
         return
+    for step in sorted(seen.starts):
+        if seen.shifts and seen.shifts[step - 1] is not None:
+            said = "there is a shift, which is not used: where a log begins, nothing is measured"
+            yield Fault(said, min(facts.known["shift"][step].values()), step)
     travels = [step for step, turn in enumerate(seen.turns, 1) if turn is not None]
     if turn := seen.turns[0]:
         said = (

@@ -26,6 +26,7 @@ from topomap.questions.reasons import (
     RULES,
     Broken,
     Told,
+    told_assumed,
     told_gateway,
     told_known,
     told_marker,
@@ -328,6 +329,8 @@ def _plainly(experience: Experience, name: str) -> Told:
         return told_marker(experience, numbers[0])
     if kind in KNOWN:
         return told_known(experience, kind, numbers)
+    if kind == "assumed":
+        return told_assumed(experience, numbers[0])
     if kind in ("closed", "travelled"):
         return told_gateway(kind, *numbers)
     return told_plainly(kind, numbers)

@@ -72,22 +72,14 @@ def check_proofs(path: str, experience: Experience) -> Checked:
     whole, experience = experience.steps, experience.cut(steps)
     document = maps.document(path, {"maps": data.get("maps")})
     charts = []
-    put = max(experience.drops, default=-1)
-    lying = put >= max([0, *experience.picks])  # taking the marker up comes before putting it down
+    lying = experience.put_down()
     for number, entry in enumerate(document.maps, 1):
         at = beginning(f"{path}: map {number}", entry["at"], experience, experience)
         grown = check.Grown(experience, dict(enumerate(at)), experience.steps)
         landmarks = {place: experience.landmarks[place] for place in grown.stars}
-        for name in {name for _, _, name in experience.things}:
-            last = max(
-                step for kind, step, other in experience.things if (kind, other) == ("drop", name)
-            )
-            if not any(
-                kind == "pick" and other == name and step > last
-                for kind, step, other in experience.things
-            ):
-                landmarks[at[last][0]] |= {f"marker({name})"}
-        lies = at[put][0] if lying else None
+        for name in lying.keys() - {None}:
+            landmarks[at[lying[name]][0]] |= {f"marker({name})"}
+        lies = at[lying[None]][0] if None in lying else None
         # A compass counts if each visit has it.
         slots = [slot for slot in experience.compass if slot is not None]
         north = {place: slots[place] for place, _ in at} if len(slots) == len(at) else {}

@@ -13,6 +13,7 @@ from functools import cached_property
 from topomap.model.experience import DState, Experience
 from topomap.model.topology import gid
 from topomap.model.words import number, plural
+from topomap.questions.statements import statement_text
 from topomap.runtime.errors import printable
 
 RULES = {
@@ -24,6 +25,7 @@ RULES = {
     "look": "second look",
     "same": "known closures",
     "apart": "known closures",
+    "assumed": "taken for granted",
     "unification": "gateway unification",
     "schema": "schema",
     "twice": "path axiom",
@@ -199,6 +201,8 @@ class Broken:
             return self._path(kind, arguments)
         if kind in KNOWN:
             return told_known(self.experience, kind, arguments, self.at)
+        if kind == "assumed":
+            return told_assumed(self.experience, arguments[0])
         if kind == "look":
             words = f"after the second look of step {arguments[0]} the agent would stand elsewhere"
             return Told(words, (arguments[0] - 1, arguments[0]))
@@ -365,6 +369,12 @@ def told_known(
             there = sorted({at[step][0] for step in steps})
             words += f"; it would have been at {_named('place', there)}"
     return Told(words, (one, other))
+
+
+def told_assumed(experience: Experience, number: int) -> Told:
+    """A statement that is taken for granted; it is that of this number."""
+    term, holds = sorted(experience.assumed)[number]
+    return Told(statement_text(term, holds), ())
 
 
 def _far(experience: Experience, one: int, other: int) -> str:

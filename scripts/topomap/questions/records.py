@@ -251,9 +251,9 @@ class Record:
     def with_object(self, data: dict[str, Any]) -> "Record":
         """The record with what a JSON object says: a step, whole, or how many to take back.
         Raises LineFault."""
+        data = {key: value for key, value in data.items() if value is not None}  # null: not told
         begins = self.slots is None
-        known = {"slots" if begins else "turn", "view", "landmarks", *MARKER, *KNOWN_KEYS}
-        known |= set() if begins else {*RESTS}
+        known = {"slots" if begins else "turn", "view", "landmarks", *MARKER, *KNOWN_KEYS, *RESTS}
         if data.keys() == {"undo"}:
             if not is_number(data["undo"]):
                 raise LineFault("undo: a whole number is wanted")
@@ -264,7 +264,7 @@ class Record:
                 raise LineFault(f"{cut_short(json.dumps(key))}: not one of {known_keys}")
         first = "slots" if begins else "turn"
         rests = [name for name in RESTS if data.get(name)]
-        if (not begins and not self.steps) or (rests and "turn" not in data):
+        if (not begins and not self.steps) or (rests and not begins and "turn" not in data):
             first = "view"
         for key in dict.fromkeys((first, "view")):
             if key not in data:
@@ -307,14 +307,14 @@ class Record:
         for name in rests:
             record = record._rested(step, name)
         for name in KNOWN_KEYS:
-            value = data.get(name)
-            if value is not None and not _fits(name, value):
+            value: Any = data.get(name)
+            if name in data and not _fits(name, value):
                 raise LineFault(f"{name}: {KNOWN_KEYS[name]} is wanted")
             for other in value or () if name in PAIRS else ():
                 if other > step:
                     raise LineFault(f"{name}: step {other} is later than step {step}")
                 record = record._paired(name, other, step)
-            if value is not None and name not in PAIRS:
+            if name in data and name not in PAIRS:
                 record = record._known(step, name, tuple(value) if name == "shift" else value)
         if lack := record.lack():
             raise LineFault(lack)

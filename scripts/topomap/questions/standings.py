@@ -28,10 +28,7 @@ class Standing:
 def standing(experience: Experience, at: tuple[DState, ...]) -> Standing:
     """The map of a hypothesis, and where the agent stands in it; the marker lies where it was
     put down last, if it was not taken up since. A compass counts if each visit has it."""
-    down = None
-    for step in range(experience.steps + 1):
-        down = None if step in experience.picks else down
-        down = step if step in experience.drops else down
+    down = experience.put_down().get(None)
     marker = None if down is None else at[down][0]
     world = experience.map_of(at)
     return Standing(
@@ -42,10 +39,8 @@ def standing(experience: Experience, at: tuple[DState, ...]) -> Standing:
 def signs(experience: Experience, at: Sequence[DState]) -> dict[Place, frozenset[str]]:
     """What is recognised at each place: its landmarks, and markers with names that lie there."""
     told = {place: experience.landmarks[place] for place, _ in at}
-    for name in {name for _, _, name in experience.things}:
-        drops, picks, _ = experience.marks_of(name)
-        down = max(drops, default=-1)
-        if down > max([-1, *picks]) or down in picks:
+    for name, down in experience.put_down().items():
+        if name is not None:
             told[at[down][0]] |= {f"marker({name})"}
     return told
 

@@ -14,6 +14,7 @@ from topomap.runtime.limits import LARGEST
 if TYPE_CHECKING:  # who only reads a call need not load the solver
     from topomap.model.experience import Experience
 
+SIGNS = {"number": ("=", "!="), "least": (">=", "<"), "most": ("<=", ">")}
 _NOT = re.compile(r"not\s+(?=\S)")
 _RELATION = re.compile(r"([a-z]\w*)\s*\(([^()]*)\)", re.ASCII)
 _COMPARISON = re.compile(r"([a-z]\w*)\s*(<=|>=|!=|<|>|=)\s*(.*)", re.ASCII | re.DOTALL)
@@ -110,6 +111,17 @@ def _plain(name: str, numbers: list[int], experience: "Experience") -> Iterator[
         for step, slot in zip(numbers[::2], numbers[1::2], strict=True):
             if slot not in experience.views[step]:
                 yield f"no gateway was seen {number(slot, 'slot')} clockwise after step {step}"
+
+
+def statement_text(term: str, positive: bool) -> str:
+    """The statement of a term of ``encodings/query.lp``, to read: ``most(place,8)`` is
+    ``places <= 8``."""
+    name, _, arguments = term.rstrip(")").partition("(")
+    if name not in SIGNS:
+        return term if positive else f"not {term}"
+    counted, _, count = arguments.partition(",")
+    figure = next(word for word, of in FIGURES.items() if of == counted)
+    return f"{figure} {SIGNS[name][not positive]} {count}"
 
 
 def _comparison(figure: str, sign: str, text: str) -> tuple[str, bool]:

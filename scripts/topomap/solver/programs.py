@@ -74,7 +74,7 @@ class Program:
             entry += beyond(experience)
         if experience.assumed:
             query = query.having("query")
-        told = experience.facts() + facts + experience.assumptions()
+        told = experience.facts() + facts + experience.assumptions("explain" in query.parts)
         self.control = control(query, told, entry, options)
         self._grounded = self._interrupted = False
         self.changed = False  # whether rules were added by which it has fewer answers
