@@ -233,6 +233,15 @@ def test_what_is_assumed_is_a_reason():
         assert words is None or [one for one in told.lines() if words in one], [*told.lines()]
 
 
+def test_a_compass_that_is_told_of_some_visits_is_left_out_of_plans():
+    """It is said, in the one line that begins with it."""
+    seen = instance(grid(3, 3), "ESWN", senses=Senses(compass=True)).experience
+    some = replace(seen, compass=(*seen.compass[:-1], None))
+    for walk, said in ((seen, 0), (some, 1), (replace(seen, compass=()), 0)):
+        lines = topomap.explore(walk).lines()
+        assert sum("the compass is left out of the plan" in line for line in lines) == said
+
+
 def test_who_does_not_ask_the_encodings_refuses_what_is_assumed():
     seen = topomap.read(ROOT / "instances/grid-3x3-snake.lp")
     told = topomap.assume(seen, "places < 9")

@@ -9,6 +9,7 @@ import subprocess
 import time
 
 import pytest
+import topomap
 from conftest import BIN, ROOT, TRIED
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -251,6 +252,22 @@ BAD = [
     ('{"undo": 5}', "undo of 5 steps: to take back: 1 step"),
     ("\0", "not text"),
 ]
+
+
+def test_a_key_that_is_null_is_not_told():
+    """Whoever writes a line for each step need not leave keys out, on the first line, either."""
+    first = {"slots": 4, "view": [0], "compass": 1}
+    second = {"turn": 0, "view": [0, 1], "shift": [3, 0]}
+    keys = ("landmarks", "marker", "drop", "pick", "same", "apart", "length", "start", "look")
+    null = dict.fromkeys(keys)
+    plain = recorded([json.dumps(first), json.dumps(second)])
+    assert recorded([json.dumps(null | first), json.dumps(null | second)]) == plain
+    false = {"start": False, "look": False, "marker": False}
+    assert recorded([json.dumps(false | first), json.dumps(false | second)]) == plain
+    with pytest.raises(InputError, match="it is the start already"):
+        recorded([json.dumps(first | {"start": True})])
+    with pytest.raises(ValueError, match="shift"):
+        topomap.follow(4).step([0], shift=())
 
 
 @pytest.mark.parametrize(("line", "fault"), BAD)

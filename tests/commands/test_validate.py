@@ -79,6 +79,10 @@ FAULTS = {  # and all that is said of them
         f"3: step 1: no view{HINT}",
     ],
     "slots(4). view(0,0).\nturn(1,0). view(1,0).\npick(1).\ndrop(0).\nmarker(1).\ndrop(1).": [],
+    "slots(4). view(0,0).\nstart(0).\nlook(0).": [
+        "2: step 0: it is the start already",
+        "3: step 0: there is no earlier look",
+    ],
     "slots(4). view(0,0).\nturn(1,0). view(1,0).\npick(1).\nmarker(0).\ndrop(1).": [
         "4: step 0: the marker is seen, but lies nowhere",
         "3: step 1: the marker is taken up, but lies nowhere",
@@ -107,6 +111,25 @@ FAULTS = {  # and all that is said of them
         MORE,
     ],
 }
+
+
+def test_what_is_too_large_depends_on_the_percent(judged):
+    """By a drift of 200 percent, half as much is a number of clingo as by 100 or less."""
+    text = "slots(4). view(0,0).\nturn(1,0). view(1,0).\nshift(1,15000000,0).\nlength(1,15000000)."
+    assert judged(text)[0] == judged(text, "--drift", "100")[0] == 0
+    far = "the shifts up to here come to 15000000; with this drift they may come to 10737418"
+    assert judged(text, "--drift", "200") == (2, [f"3: step 1: {far}"])
+    assert judged(text, "--stretch", "200") == (
+        2,
+        ["4: step 1: length 15000000 is above 10737418, the most with this stretch"],
+    )
+
+
+def test_a_shift_that_is_not_used_is_told(judged):
+    text = "slots(4). view(0,0).\nturn(1,0). view(1,0).\nstart(2). view(2,0). shift(2,1,1)."
+    _, (_, warning) = judged(text)
+    assert warning.startswith("3: step 2: warning: there is a shift, which is not used")
+    assert len(judged(text.replace("shift(2", "shift(1"))[1]) == 1
 
 
 @pytest.mark.parametrize("text", FAULTS)

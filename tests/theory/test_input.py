@@ -6,7 +6,7 @@ import re
 
 import pytest
 from conftest import ENCODINGS, ROOT, run
-from oracles.instance_faults import KINDS, corrupted, errors
+from oracles.instance_faults import KINDS, PROGRAM, corrupted, errors
 from oracles.maps_with_errors import INSTANCES
 from topomap.model.facts import parse
 from topomap.runtime.errors import InputError
@@ -41,6 +41,16 @@ def agree(facts):
 def test_the_reader_refuses_exactly_what_shows_an_error(seeds):
     bad = [agree(corrupted(random.Random(f"input {seed}"))) for seed in seeds]
     assert len(seeds) // 2 < sum(bad) < len(seeds)
+
+
+def test_percents_are_not_negative():
+    """They are constants of clingo, which takes any number; the commands refuse these, too."""
+    facts = "slots(4). view(0,0). turn(1,0). view(1,0). shift(1,1,0). length(1,5).\n"
+    for name in ("drift", "stretch"):
+        assert errors(facts, f"{PROGRAM}\n#const {name} = -1. ") == [
+            f"error(-1,negative_{name}(-1))"
+        ]
+        assert errors(facts, f"{PROGRAM}\n#const {name} = 0. ") == []
 
 
 def test_it_grounds_over_what_occurs(tmp_path):
