@@ -254,6 +254,8 @@ def test_who_does_not_ask_the_encodings_refuses_what_is_assumed():
     ):
         with pytest.raises(ValueError, match="taken for granted"):
             call()
+    with pytest.raises(topomap.InputError, match="foo: no such word"):
+        topomap.solve(Experience(4, [[0]], [], assumed=[("foo", True)]))
     with pytest.raises(ValueError, match="assumed"):
         Experience(4, [[0]], [], assumed=["planar"])
     with pytest.raises(ValueError, match="assumed"):

@@ -9,7 +9,7 @@ import subprocess
 import time
 
 import pytest
-import topomap
+import topomap as topomap_api
 from conftest import BIN, ROOT, TRIED
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -202,8 +202,8 @@ BAD = [
     ("veiw(2,0).", "veiw(2,0): veiw/2 is not known; did you mean view/2?"),
     ("undone(1).", "undone(1): undone/1 is not known; did you mean undo/1?"),
     ("turn(2,0). undo(1).", "undo(1): undo is a line by itself"),
-    ("view(3,0).", "step 3: it is 1 or 2 now"),
-    ("view(0,3).", "step 0: it is 1 or 2 now"),
+    ("view(3,0).", "step 3: the log is at step 1, and goes on with that or with step 2"),
+    ("view(0,3).", "step 0: the log is at step 1, and goes on with that or with step 2"),
     ("turn(2,4).", "step 2: slot 4 is not in 0..3"),
     ("turn(2,1).", "step 2: turn 1: no gateway there after step 1"),
     ("turn(2,0). turn(2,2).", "step 2: more than one turn"),
@@ -214,7 +214,7 @@ BAD = [
     ("view(X,0).", "is not a ground fact"),
     ("marker(1).", "step 1: the marker is seen, but lies nowhere"),
     ("pick(1). drop(1).", "step 1: the marker is taken up, but lies nowhere"),
-    ("drop(0). turn(2,0). view(2,0). drop(2).", "step 0: it is 1 or 2 now"),
+    ("drop(0). turn(2,0). view(2,0). drop(2).", "step 0: the log is at step 1, and goes on with"),
     ("drop(1). turn(2,0). view(2,0). drop(2).", "step 2: the marker is put down, but lies"),
     ("drop(1,0,0).", "drop(1,0,0): drop has 1 argument, drop(T), or 2 with a name"),
     ("drop(1,a). drop(1,b). turn(2,0). view(2,0). drop(2,a).", "step 2: the marker a is put down,"),
@@ -254,6 +254,24 @@ BAD = [
 ]
 
 
+def test_a_new_log_is_refused_where_maps_are_to_be_planar(topomap):
+    """In one line that names the line of the input, and whatever was told before is answered."""
+    text = "\n".join([*LINES[:3], "start(2). view(2,0)."])
+    done = topomap("follow", "--planar", input=text)
+    assert done.returncode == 2
+    said = "standard input:4: step 2: a new log is not followed if maps are to be planar\n"
+    assert done.stderr == said
+    assert "step 1" in done.stdout
+    begun = topomap_api.follow(4, planar=True)
+    begun.step([0])
+    with pytest.raises(ValueError, match="a new log is not followed"):
+        begun.step([0], start=True)
+    lone = "slots(4). view(0,0). start(1). view(1,0)."
+    refused = topomap("branching", "-", input=lone)
+    assert (refused.returncode, refused.stdout) == (2, "")
+    assert refused.stderr == "branching: equation (1) is of one log, without start(T)\n"
+
+
 def test_a_key_that_is_null_is_not_told():
     """Whoever writes a line for each step need not leave keys out, on the first line, either."""
     first = {"slots": 4, "view": [0], "compass": 1}
@@ -267,7 +285,7 @@ def test_a_key_that_is_null_is_not_told():
     with pytest.raises(InputError, match="it is the start already"):
         recorded([json.dumps(first | {"start": True})])
     with pytest.raises(ValueError, match="shift"):
-        topomap.follow(4).step([0], shift=())
+        topomap_api.follow(4).step([0], shift=())
 
 
 @pytest.mark.parametrize(("line", "fault"), BAD)
@@ -287,7 +305,10 @@ def test_a_bad_line_ends_it_or_is_passed_over(topomap, tmp_path):
     for arguments, name in ((["-"], "standard input"), ([file, "--no-wait"], str(file))):
         done = topomap("follow", "--json", *arguments, input=text)
         assert done.returncode == 2
-        assert done.stderr == f"{name}:4: step 9: it is 1 or 2 now\n"
+        assert (
+            done.stderr
+            == f"{name}:4: step 9: the log is at step 1, and goes on with that or with step 2\n"
+        )
         assert len(done.stdout.splitlines()) == 2
     done = topomap("follow", "--json", "--keep-going", input=text)
     assert (done.returncode, done.stderr.count("\n")) == (0, 1)

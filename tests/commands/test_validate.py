@@ -79,6 +79,11 @@ FAULTS = {  # and all that is said of them
         f"3: step 1: no view{HINT}",
     ],
     "slots(4). view(0,0).\nturn(1,0). view(1,0).\npick(1).\ndrop(0).\nmarker(1).\ndrop(1).": [],
+    "slots(4). view(0,0).\nturn(1,0). view(1,0). shift(1,1.5,0).": [
+        "2: 'shift(1,1' is not a ground fact: numbers are whole, without a decimal point",
+        "2: '5,0)' is not a ground fact",
+        MORE,
+    ],
     "slots(4). view(0,0).\nstart(0).\nlook(0).": [
         "2: step 0: it is the start already",
         "3: step 0: there is no earlier look",
@@ -117,11 +122,15 @@ def test_what_is_too_large_depends_on_the_percent(judged):
     """By a drift of 200 percent, half as much is a number of clingo as by 100 or less."""
     text = "slots(4). view(0,0).\nturn(1,0). view(1,0).\nshift(1,15000000,0).\nlength(1,15000000)."
     assert judged(text)[0] == judged(text, "--drift", "100")[0] == 0
-    far = "the shifts up to here come to 15000000; with this drift they may come to 10737418"
+    held = "with a drift of 200 % clingo's numbers hold 10737418 in all"
+    far = f"the shifts up to here come to 15000000; {held}"
     assert judged(text, "--drift", "200") == (2, [f"3: step 1: {far}"])
     assert judged(text, "--stretch", "200") == (
         2,
-        ["4: step 1: length 15000000 is above 10737418, the most with this stretch"],
+        [
+            "4: step 1: length 15000000 is above 10737418, the most that clingo's numbers hold "
+            "with a stretch of 200 %"
+        ],
     )
 
 

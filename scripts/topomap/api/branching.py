@@ -5,6 +5,7 @@ from typing import Any
 
 from topomap.model.experience import Experience
 from topomap.model.query import Query
+from topomap.runtime.errors import InputError
 from topomap.runtime.watch import Attempt, Watch
 from topomap.search import branching, traversal
 from topomap.search.branching import BranchingNode
@@ -45,5 +46,7 @@ class BranchingNodes:
 
 def branching_nodes_under(watch: Watch, experience: Experience, query: Query) -> BranchingNodes:
     """The branching nodes of the planar maps of a query, under the watch of a command."""
+    if experience.starts:
+        raise InputError("branching: equation (1) is of one log, without start(T)")
     node = traversal.root(experience, query.having("planar"))
     return BranchingNodes(branching.branching(node, watch))

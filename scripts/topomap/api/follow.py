@@ -257,6 +257,7 @@ def follow(
     following.record = Record(
         drift=DRIFT if drift is None else whole("drift", drift, 0),
         stretch=STRETCH if stretch is None else whole("stretch", stretch, 0),
+        one_log=planar,
     )
     if slots is not None:
         following.record = following.record.with_slots(whole("slots", slots, 2, MOST_SLOTS))

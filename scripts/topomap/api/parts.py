@@ -10,6 +10,7 @@ from topomap.model.experience import Experience
 from topomap.model.facts import parse
 from topomap.model.query import Query
 from topomap.model.vocabulary import FORMS, PARTS, STATED
+from topomap.questions.statements import parse_statement, statement_text
 from topomap.runtime.checks import flag, percent, seconds, shown, whole_if_given
 from topomap.runtime.watch import Watch
 from topomap.worlds.environment import Environment, environment
@@ -105,6 +106,8 @@ def begin(experience: Experience, timeout: float | None, noisy: bool = False) ->
     limit = seconds("timeout", timeout)
     measured = experience.drift, experience.stretch
     parse(experience.facts(), "the experience, as facts", noisy, *measured)
+    for term, holds in sorted(experience.assumed):
+        parse_statement(statement_text(term, holds), experience, "assumed")
     return Watch(limit)
 
 

@@ -287,8 +287,7 @@ class Facts:
                 yield Fault(f"length {length} is not above 0", line, step)
             most = LARGEST // max(100, self.stretch)
             if length > most:
-                said = f"length {length} is above {most}, the most with this stretch"
-                yield Fault(said, line, step)
+                yield Fault(_too_long(length, most, self.stretch), line, step)
         if told_apart := self.pairs["apart"].get((step, step)):
             yield Fault("it is told to be of another place than itself", told_apart, step)
 
@@ -302,9 +301,7 @@ class Facts:
                 more = {n + abs(x) + abs(y) for n in sums for x, y in shifts}
                 sums = {n for n in more if n <= most}
                 if not sums:
-                    said = f"the shifts up to here come to {min(more)}"
-                    said += f"; with this drift they may come to {most}"
-                    yield Fault(said, min(shifts.values()), step)
+                    yield Fault(_too_far(min(more), most, self.drift), min(shifts.values()), step)
                     return
             step += 1
 
@@ -348,13 +345,22 @@ def range_fault(
     for step, shift in enumerate(shifts, 1):
         far += abs(shift[0]) + abs(shift[1]) if shift else 0
         if far > most:
-            said = f"the shifts up to here come to {far}; with this drift they may come to {most}"
-            return Fault(said, step=step)
+            return Fault(_too_far(far, most, drift), step=step)
     most = LARGEST // max(100, stretch)
     for step, length in enumerate(lengths, 1):
         if length is not None and length > most:
-            return Fault(f"length {length} is above {most}, the most with this stretch", step=step)
+            return Fault(_too_long(length, most, stretch), step=step)
     return None
+
+
+def _too_far(far: int, most: int, drift: int) -> str:
+    held = f"with a drift of {drift} % clingo's numbers hold {most} in all"
+    return f"the shifts up to here come to {far}; {held}"
+
+
+def _too_long(length: int, most: int, stretch: int) -> str:
+    held = f"the most that clingo's numbers hold with a stretch of {stretch} %"
+    return f"length {length} is above {most}, {held}"
 
 
 def slots_fault(slots: int) -> str | None:
@@ -395,6 +401,7 @@ def misfit(fact: clingo.Symbol, forms: Mapping[str, str] = SIGNATURES) -> str | 
 _TOKEN = re.compile(rf'%\*|%[^\n]*|\.\.|{STRING}|\.|[^%".]+|"', re.DOTALL)
 _COMMENT = re.compile(r"%\*|\*%|[^%*]+|[%*]", re.DOTALL)
 _FACT = re.compile(r"-?[a-z]\w*\(.*\)", re.DOTALL)
+_DECIMAL = re.compile(r"[a-z]\w*\([^()]*,\s*-?[0-9]+", re.DOTALL)  # cut at a decimal point
 _NO_STOP = re.compile(r"\)\s+[a-z]\w*\(")
 
 
@@ -428,6 +435,8 @@ def ground_facts(text: str, line: int = 1) -> Iterator[tuple[int, clingo.Symbol 
 
 def _fact(text: str) -> clingo.Symbol | str:
     """The ground fact of a text, or why there is none."""
+    if _DECIMAL.fullmatch(text):
+        return f"{quoted(text)} is not a ground fact: numbers are whole, without a decimal point"
     if not _FACT.fullmatch(text):
         return f"{quoted(text)} is not a ground fact"
     read = ground(text, "fact")

@@ -11,7 +11,6 @@ from topomap.model.found import Found, steps_json
 from topomap.questions.explore import LIMITS, Plan, plan
 from topomap.questions.records import Record
 from topomap.questions.standings import standing
-from topomap.runtime.errors import InputError
 from topomap.runtime.limits import MOST_COUNTED
 from topomap.runtime.watch import Watch
 from topomap.solver.online import Certain, OnlineSolver, Status
@@ -112,16 +111,13 @@ class Following:
         most: int = MOST_COUNTED,
     ):
         self.planar, self.bound, self.marker, self.most = planar, bound, marker, most
-        self.record = Record()
+        self.record = Record(one_log=planar)
         self.solver: OnlineSolver | None = None
         self._certain: list[Certain] = []  # by steps
 
     def take(self, record: Record) -> Iterator[int]:
         """Go to what a record says; the steps at which it stands on the way."""
         old, new = self.record.whole(), record.whole()
-        logs = [number for number, step in enumerate(new) if step.start]
-        if self.planar and logs:
-            raise InputError(f"step {logs[0]}: a new log is not followed if maps are to be planar")
         self.record = record
         common = 0
         while common < min(len(old), len(new)) and old[common] == new[common]:

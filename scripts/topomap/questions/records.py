@@ -50,6 +50,7 @@ class Record:
     steps: tuple[Step, ...] = ()
     drift: int = DRIFT
     stretch: int = STRETCH
+    one_log: bool = False  # whether no new log may begin
 
     def lack(self) -> str | None:
         """What the last step lacks."""
@@ -152,6 +153,8 @@ class Record:
         if step == 0:
             said = "it is the start already" if kind == "start" else "there is no earlier look"
             raise LineFault(f"step 0: {said}")
+        if kind == "start" and self.one_log:
+            raise LineFault(f"step {step}: a new log is not followed if maps are to be planar")
         if known.turn is not None:
             said = "it has a turn, but begins a log" if kind == "start" else "a look has no turn"
             raise LineFault(f"step {step}: {said}")
@@ -214,8 +217,8 @@ class Record:
             raise LineFault("no slots(K) before the first step")
         last = len(self.steps) - 1
         if step not in (last, last + 1) or step < 0:
-            may = f"{last} or {last + 1}" if last >= 0 else "0"
-            raise LineFault(f"step {step}: it is {may} now")
+            now = f"is at step {last}, and goes on with that or with step {last + 1}"
+            raise LineFault(f"step {step}: the log {now if last >= 0 else 'begins with step 0'}")
         if step > last and (lack := self.lack()):
             raise LineFault(f"{lack}, but there is a later step")
         known = self.steps[step] if step == last else Step()

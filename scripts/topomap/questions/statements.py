@@ -77,6 +77,8 @@ def _unknown(word: str) -> str:
         return f"it is a number, to be compared: {word} < 12"
     if word in PROPERTIES:
         return "it is said of the whole map, without more"
+    if word == "apart":
+        return "no such word; write not same(T,U)"
     return (
         f"no such word; there are {', '.join(dict.fromkeys([*RELATIONS, *FIGURES, *PROPERTIES]))}"
     )
