@@ -140,7 +140,7 @@ def test_several_logs(block):
 @pytest.mark.long
 @pytest.mark.parametrize("block", range(10))
 def test_many_random_worlds(block):
-    for number in range(300):
+    for number in range(60):
         agree(informed(random.Random(f"many informed {block}/{number}"), 10))
         agree(logs(random.Random(f"many logs {block}/{number}"), 8))
 
