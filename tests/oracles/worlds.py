@@ -46,24 +46,14 @@ def random_experience(draw: random.Random, steps: int, marker: bool = False) -> 
     straight on, from any gateway of any place; the same walk with a marker put down and taken
     up here and there."""
     made = random_world(draw)
-    start = place, slot = draw.choice(sorted(made.links))
-    route = []
-    for _ in range(draw.randint(0, steps)):
-        ahead = (slot + made.slots // 2) % made.slots
-        if ahead not in made.stars[place] or draw.random() < 0.5:
-            ahead = draw.choice(sorted(made.stars[place]))
-        route.append(ahead)
-        place, slot = made.links[place, ahead]
+    start = draw.choice(sorted(made.links))
+    route, _ = wandering(draw, made, start, steps)
     return observe(made, start, route, *(with_marker(route) if marker else ()))[0]
 
 
-def informed(draw: random.Random, steps: int) -> Experience:
-    """A walk of which more is known than views: some of compass, odometry, lengths, and visits of
-    one place or of two, of some steps or of all, most of it true."""
-    made = random_world(draw)
-    place, slot = start = draw.choice(sorted(made.links))
-    where = {p: (draw.randint(-3, 3), draw.randint(-3, 3)) for p in sorted(made.stars)}
-    long = {}  # of each link
+def wandering(draw, made, start, steps):
+    """A random route of up to so many steps, and the dstates on it."""
+    place, slot = start
     route, dstates = [], [start]
     for _ in range(draw.randint(0, steps)):
         ahead = (slot + made.slots // 2) % made.slots
@@ -72,6 +62,17 @@ def informed(draw: random.Random, steps: int) -> Experience:
         route.append(ahead)
         place, slot = made.links[place, ahead]
         dstates.append((place, slot))
+    return route, dstates
+
+
+def informed(draw: random.Random, steps: int) -> Experience:
+    """A walk of which more is known than views: some of compass, odometry, lengths, and visits of
+    one place or of two, of some steps or of all, most of it true."""
+    made = random_world(draw)
+    start = draw.choice(sorted(made.links))
+    where = {p: (draw.randint(-3, 3), draw.randint(-3, 3)) for p in sorted(made.stars)}
+    long = {}  # of each link
+    route, dstates = wandering(draw, made, start, steps)
     seen, _ = observe(made, start, route)
     kinds = {kind for kind in ("compass", "shift", "length", "pairs") if draw.random() < 0.5}
     rate = draw.choice([1, 1, 0.8, 0.5])

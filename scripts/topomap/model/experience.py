@@ -1,6 +1,6 @@
 """Experiences: what an exploration does and sees."""
 
-from collections.abc import Callable, Container, Iterable
+from collections.abc import Callable, Container, Iterable, Iterator
 from dataclasses import dataclass, fields
 from typing import Any, TypeVar
 
@@ -393,13 +393,18 @@ class Experience:
         line += [f"pick({named})."] * (step in self.picks)
         line += [f"drop({named})."] * (step in self.drops)
         line += sorted(f"{kind}({named},{name})." for kind, at, name in self.things if at == step)
-        if self.compass and (slot := self.compass[step]) is not None:
-            line.append(f"compass({named},{slot}).")
-        if step and self.shifts and (shift := self.shifts[step - 1]) is not None:
-            line.append(f"shift({named},{shift[0]},{shift[1]}).")
-        if step and self.lengths and (length := self.lengths[step - 1]) is not None:
-            line.append(f"length({named},{length}).")
+        for name, numbers in self.measured(step):
+            line.append(f"{name}({','.join(map(str, (named, *numbers)))}).")
         return line
+
+    def measured(self, step: int) -> Iterator[tuple[str, tuple[int, ...]]]:
+        """What is measured of a step: the name of the fact, and its numbers but for the step."""
+        if self.compass and (slot := self.compass[step]) is not None:
+            yield "compass", (slot,)
+        if step and self.shifts and (shift := self.shifts[step - 1]) is not None:
+            yield "shift", shift
+        if step and self.lengths and (length := self.lengths[step - 1]) is not None:
+            yield "length", (length,)
 
     def map_of(self, at: tuple[DState, ...]) -> TopologicalMap:
         """The map of a hypothesis, given the dstate after each step (``at/3``)."""

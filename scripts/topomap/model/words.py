@@ -91,13 +91,8 @@ def marker(experience: "Experience", step: int) -> str:
 
 def known(experience: "Experience", step: int) -> str:
     """What is known of a step besides what is seen."""
-    told = []
-    if experience.compass and (slot := experience.compass[step]) is not None:
-        told.append(f"compass {slot}")
-    if step and experience.shifts and (shift := experience.shifts[step - 1]) is not None:
-        told.append(f"shift {shift[0]}, {shift[1]}")
-    if step and experience.lengths and (length := experience.lengths[step - 1]) is not None:
-        told.append(f"length {length}")
+    measured = experience.measured(step)
+    told = [f"{name} {', '.join(map(str, numbers))}" for name, numbers in measured]
     for name, pairs in (
         ("same place as", experience.same),
         ("another place than", experience.apart),
