@@ -146,7 +146,8 @@ class Hypothesis:
                 return False
         return True
 
-    def boundary(self):
+    def sides(self):
+        """Of each path its places, and those right and left of it."""
         half = self.slots // 2
         for path in self.paths():
             on, left, right = {p for p, _ in path}, set(), set()
@@ -154,9 +155,18 @@ class Hypothesis:
                 for turn in range(1, half):
                     right |= {p for p, _ in self.ray((place, (heading + turn) % self.slots))}
                     left |= {p for p, _ in self.ray((place, (heading - turn) % self.slots))}
-            if left & right or on & left or on & right:
-                return False
-        return True
+            yield on, right, left
+
+    def boundary(self):
+        return not any(left & right or on & left or on & right for on, right, left in self.sides())
+
+    def exceptions(self):
+        """How many pairs of paths share two places, paths hold a place twice, and places are on
+        both sides of a path."""
+        places = [{p for p, _ in path} for path in self.paths()]
+        pairs = sum(len(a & b) > 1 for a, b in combinations(places, 2))
+        again = sum(len({p for p, _ in path}) < len(path) for path in self.paths())
+        return pairs, again, sum(len(left & right) for _, right, left in self.sides())
 
     def cost(self):
         return len(self.paths()), len(self.stars)
