@@ -71,8 +71,9 @@ class Hypothesis:
             back = self.ray(gateway)
             forth = [self.opposite(a) for a in self.ray(self.opposite(gateway))]
             path = [*reversed(back), self.opposite(gateway), *forth]
-            done |= {frozenset((h, self.opposite(h))) for h in path}
-            paths.append(path)
+            axes = {frozenset((h, self.opposite(h))): h for h in path}  # each once, of a circle, too
+            done |= axes.keys()
+            paths.append([*axes.values()])
         return paths
 
     def faces(self):
@@ -135,7 +136,9 @@ class Hypothesis:
         return not self.pending()
 
     def travelled(self):
-        return all(len(path) > 1 for path in self.paths())
+        return all(
+            any({h, self.opposite(h)} & self.link.keys() for h in path) for path in self.paths()
+        )
 
     def perpendicular(self):
         places = [{p for p, _ in path} for path in self.paths()]
@@ -253,8 +256,9 @@ def contradicts(experience, at):
     )
 
 
-def tree(experience, planar=False, bound=None):
-    """All hypotheses by step: a list of lists, one for each step from 0 (Figure 2)."""
+def tree(experience, planar=False, bound=None, axiom=True):
+    """All hypotheses by step: a list of lists, one for each step from 0 (Figure 2); with or without
+    the path axiom."""
     slots, views, turns, landmarks, marker, known = experience
     levels = [[((0, 0),)]]
     for t in range(1, len(turns)):
@@ -292,7 +296,7 @@ def tree(experience, planar=False, bound=None):
             for arrival in [*arrivals, (t, 0)]:
                 child = (*at, arrival)
                 after = Hypothesis(experience, child)
-                if after.breaks_path_axiom() or not marked(marker, child):
+                if (axiom and after.breaks_path_axiom()) or not marked(marker, child):
                     continue
                 if known and contradicts(experience, child):
                     continue
