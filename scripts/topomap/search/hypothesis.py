@@ -413,8 +413,8 @@ class Hypothesis:
         return Link(out, arrival, path, other, faces, places, more, meets, met, merged)
 
     def _cross(self, path: int, other: int, meets: int, met: int) -> None:
-        """Of the paths that meet two, ``meets`` the one and ``met`` the other, say that they meet the
-        one that these become; or take that back."""
+        """Of the paths that meet two others, ``meets`` the one and ``met`` the other, say that they
+        meet the one that these become; or take that back."""
         both = (1 << path) | (1 << other)
         for crossing in numbers(met & ~meets):
             self.meets[crossing] ^= both
