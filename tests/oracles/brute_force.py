@@ -71,9 +71,7 @@ class Hypothesis:
             back = self.ray(gateway)
             forth = [self.opposite(a) for a in self.ray(self.opposite(gateway))]
             path = [*reversed(back), self.opposite(gateway), *forth]
-            axes = {
-                frozenset((h, self.opposite(h))): h for h in path
-            }  # each once, of a circle, too
+            axes = {frozenset((h, self.opposite(h))): h for h in path}
             done |= axes.keys()
             paths.append([*axes.values()])
         return paths

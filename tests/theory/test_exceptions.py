@@ -6,10 +6,12 @@ from collections import Counter
 
 import clingo
 import pytest
-from conftest import ENCODINGS, ROOT, TRIED, plain
+import topomap
+from conftest import ENCODINGS, ROOT, TRIED, Truth, plain
 from oracles import brute_force
 from oracles.worlds import random_experience
 from topomap.model.experience import observe
+from topomap.model.facts import parse
 from topomap.model.topology import TopologicalMap
 from topomap.runtime.watch import Watch
 from topomap.search.hypothesis import Hypothesis
@@ -134,3 +136,65 @@ def test_all_ways_agree(axiom, seeds):
             }
         consistent = maps(facts, "topomap", "boundary", *taken).keys()
         assert consistent == {at for at, kinds in told.items() if not any(kinds)}
+
+
+PARTS = ("planar", "closed", "perpendicular", "travelled", "boundary")
+WISHES = ("no_path_axiom", "exceptions", "minimal", "genus")
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_the_search_gives_what_clingo_gives(seed):
+    """With any parts, and what is minimised costs as much."""
+    draw = random.Random(f"parts {seed}")
+    seen = random_experience(draw, draw.choice([4, 6, 7, 8]))
+    asked = {part: True for part in (*PARTS, *WISHES) if draw.random() < 0.35}
+    found = {
+        by: {(one.at, one.cost) for one in topomap.solve(seen, by=by, **asked)}
+        for by in ("clingo", "search", "auto")
+    }
+    assert found["clingo"] == found["search"] == found["auto"], asked
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_the_best_maps_are_those_that_are_preferred(seed):
+    """Closed, then fewest exceptions, then fewest paths, then fewest places: of all maps by the
+    oracle; and told step by step, the follower has the same."""
+    draw = random.Random(f"best {seed}")
+    seen = random_experience(draw, draw.choice([4, 6, 7, 8, 9]))
+    if seed == 0:
+        seen = parse(crescent(), "crescent")
+    every = Truth(seen).final
+
+    def worth(one):
+        return not one.closed(), sum(one.exceptions()), *one.cost()
+
+    first = min(map(worth, every.values()))
+    best = {at for at, one in every.items() if worth(one) == first}
+    for by in ("auto", "clingo", "search"):
+        answer = topomap.solve(seen, optimal=True, by=by)
+        assert {one.at for one in answer} == best
+        assert (answer.kind, answer.cost) == ("best so far" if first[0] else "optimal", first[1:])
+    follower = topomap.follow(seen.slots)
+    for step, view in enumerate(seen.views):
+        turn = seen.turns[step - 1] if step else None
+        status = follower.step(sorted(view), turn, sorted(seen.landmarks[step]))
+    assert {one.at for one in status.best} == best
+    assert status.cost == first[1:]
+
+
+def test_exceptions_are_named():
+    """By the first step along each path, in words and as JSON."""
+    oxbow = topomap.read(CASES / "oxbow.lp")
+    (one,) = topomap.solve(oxbow, planar=True, optimal=True)
+    assert [each.words for each in one.exceptions] == [
+        "paths 2 and 6 meet twice, at places 1 and 3",
+        "place 3 is left and right of path 1",
+        "place 6 is left and right of path 2",
+        "place 2 is left and right of path 6",
+        "place 1 is left and right of path 4",
+    ]
+    assert one.exceptions[0].document() == {
+        "kind": "meet twice",
+        "paths": (2, 6),
+        "places": (1, 3),
+    }
