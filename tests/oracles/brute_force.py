@@ -71,8 +71,9 @@ class Hypothesis:
             back = self.ray(gateway)
             forth = [self.opposite(a) for a in self.ray(self.opposite(gateway))]
             path = [*reversed(back), self.opposite(gateway), *forth]
-            done |= {frozenset((h, self.opposite(h))) for h in path}
-            paths.append(path)
+            axes = {frozenset((h, self.opposite(h))): h for h in path}
+            done |= axes.keys()
+            paths.append([*axes.values()])
         return paths
 
     def faces(self):
@@ -135,7 +136,9 @@ class Hypothesis:
         return not self.pending()
 
     def travelled(self):
-        return all(len(path) > 1 for path in self.paths())
+        return all(
+            any({h, self.opposite(h)} & self.link.keys() for h in path) for path in self.paths()
+        )
 
     def perpendicular(self):
         places = [{p for p, _ in path} for path in self.paths()]
@@ -146,7 +149,8 @@ class Hypothesis:
                 return False
         return True
 
-    def boundary(self):
+    def sides(self):
+        """Of each path its places, and those right and left of it."""
         half = self.slots // 2
         for path in self.paths():
             on, left, right = {p for p, _ in path}, set(), set()
@@ -154,9 +158,18 @@ class Hypothesis:
                 for turn in range(1, half):
                     right |= {p for p, _ in self.ray((place, (heading + turn) % self.slots))}
                     left |= {p for p, _ in self.ray((place, (heading - turn) % self.slots))}
-            if left & right or on & left or on & right:
-                return False
-        return True
+            yield on, right, left
+
+    def boundary(self):
+        return not any(left & right or on & left or on & right for on, right, left in self.sides())
+
+    def exceptions(self):
+        """How many pairs of paths share two places, paths hold a place twice, and places are on
+        both sides of a path."""
+        places = [{p for p, _ in path} for path in self.paths()]
+        pairs = sum(len(a & b) > 1 for a, b in combinations(places, 2))
+        again = sum(len({p for p, _ in path}) < len(path) for path in self.paths())
+        return pairs, again, sum(len(left & right) for _, right, left in self.sides())
 
     def cost(self):
         return len(self.paths()), len(self.stars)
@@ -243,8 +256,9 @@ def contradicts(experience, at):
     )
 
 
-def tree(experience, planar=False, bound=None):
-    """All hypotheses by step: a list of lists, one for each step from 0 (Figure 2)."""
+def tree(experience, planar=False, bound=None, axiom=True):
+    """All hypotheses by step: a list of lists, one for each step from 0 (Figure 2); with or without
+    the path axiom."""
     slots, views, turns, landmarks, marker, known = experience
     levels = [[((0, 0),)]]
     for t in range(1, len(turns)):
@@ -282,7 +296,7 @@ def tree(experience, planar=False, bound=None):
             for arrival in [*arrivals, (t, 0)]:
                 child = (*at, arrival)
                 after = Hypothesis(experience, child)
-                if after.breaks_path_axiom() or not marked(marker, child):
+                if (axiom and after.breaks_path_axiom()) or not marked(marker, child):
                     continue
                 if known and contradicts(experience, child):
                     continue

@@ -7,7 +7,7 @@ from topomap.api.parts import Parts, begin, demand_pairs, query_of
 from topomap.model.experience import Experience
 from topomap.model.query import Query
 from topomap.model.reply import Reply
-from topomap.model.vocabulary import DEMANDS
+from topomap.model.vocabulary import DEMANDS, RELAXING
 from topomap.paper import statistics
 from topomap.runtime.checks import flag, whole
 from topomap.runtime.journal import Journal
@@ -95,7 +95,7 @@ def count(
         ValueError: an unknown part, or a number that cannot be.
         InputError: an experience that cannot be, one line that names step and fault.
     """
-    query = query_of(parts, bound=bound, horizon=horizon, allowed=DEMANDS)
+    query = query_of(parts, bound=bound, horizon=horizon, allowed=(*DEMANDS, *RELAXING))
     circumscribe = flag("circumscribe", circumscribe)
     jobs = whole("jobs", jobs, 1)
     demand_pairs(experience, "count")

@@ -6,9 +6,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from topomap.documents import answers
-from topomap.documents.maps import BEST
+from topomap.model.exceptions import NamedException, exceptions_of
 from topomap.model.experience import DState, Experience, Misread
-from topomap.model.found import UNPROVED, Found
+from topomap.model.found import BEST, UNPROVED, Found
 from topomap.model.topology import Gateway, Place, TopologicalMap
 from topomap.model.words import markers
 
@@ -119,6 +119,12 @@ class Map:
     def cost(self) -> tuple[int, ...]:
         """What was minimised, most important first; empty if nothing was."""
         return self._found.cost
+
+    @cached_property
+    def exceptions(self) -> list[NamedException]:
+        """What is not consistent about the boundaries: paths that meet twice, places that are left
+        and right of a path, and, without the path axiom, paths that hold a place twice."""
+        return exceptions_of(self._corrected, self.at)
 
     @property
     def proved(self) -> bool:

@@ -24,8 +24,9 @@ class Parts(TypedDict, total=False):
     formula; ``closed``: no gateway is pending; ``travelled``: every path holds two places or
     more; ``boundary``: no place is left and right of a path, or on it and beside it;
     ``perpendicular``: two paths meet once at most, and no three make a triangle; ``genus``:
-    the least genus is preferred; ``minimal``: the fewest paths are preferred, then the fewest
-    places.
+    the least genus is preferred; ``exceptions``: then the fewest exceptions to consistent
+    boundaries; ``minimal``: then the fewest paths, then the fewest places. And ``no_path_axiom``: a
+    path may hold a place twice, and may be circular.
     """
 
     planar: bool
@@ -35,7 +36,9 @@ class Parts(TypedDict, total=False):
     boundary: bool
     perpendicular: bool
     genus: bool
+    exceptions: bool
     minimal: bool
+    no_path_axiom: bool
 
 
 class OnlineParts(TypedDict, total=False):

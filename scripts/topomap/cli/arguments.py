@@ -163,7 +163,7 @@ def add_asked(
     """Which maps are asked for, and how long."""
     add = command.add_argument
     for part in parts:
-        add(f"--{part}", action="store_true", help=PARTS[part])
+        add(f"--{part.replace('_', '-')}", action="store_true", help=PARTS[part])
     add("--bound", type=number(int, 1), metavar="B", help="at most B places")
     if horizon:
         add("--horizon", type=number(int, 0), metavar="T", help="cut the experience after step T")

@@ -6,8 +6,9 @@ from typing import IO, Any
 
 from topomap.model import words
 from topomap.model.compact import CompactMap, Numbering
+from topomap.model.exceptions import exceptions_of
 from topomap.model.experience import DState, Experience, Misread
-from topomap.model.found import UNPROVED, Found, steps_json
+from topomap.model.found import BEST, UNPROVED, Found, steps_json
 from topomap.model.query import Query
 from topomap.model.topology import Gateway, TopologicalMap
 from topomap.runtime import formats
@@ -175,8 +176,12 @@ class Report:
         if self.truth:
             real = corrected.map_of(found.at).isomorphic(self.truth)
             self.real += real
+        # Where they are minimised, they are told. (Of a million maps this would take long.)
+        exceptions = exceptions_of(corrected, found.at) if found.kind in BEST else []
         if self.as_json:
             more: dict[str, Any] = {}
+            if found.kind in BEST:
+                more["exceptions"] = [one.document() for one in exceptions]
             if self.noisy:
                 more["misread"] = misread_json(self.experience, found.misread)
             if self.truth:
@@ -192,6 +197,8 @@ class Report:
             mark = " (the real map)" if real else ""
             line = map_line(corrected, found) if found.misread else self._texts.line(found)
             self.out.write(f"map {self.count}{mark}: {line}\n")
+            for one in exceptions:
+                self.out.write(f"  {one.words}\n")
 
     def end(
         self,

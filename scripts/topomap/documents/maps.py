@@ -15,7 +15,7 @@ from clingo import parse_term
 
 from topomap.documents.check import STEP_RULES, by_definition
 from topomap.model.experience import DState, Experience, Misread
-from topomap.model.found import UNPROVED
+from topomap.model.found import BEST, UNPROVED
 from topomap.model.topology import TopologicalMap
 from topomap.model.vocabulary import PARTS, PROPERTIES
 from topomap.runtime import files, formats
@@ -30,7 +30,6 @@ _AT = re.compile(r"at\((-?\d+),(-?\d+),(-?\d+)\)", re.ASCII)
 BEST_FIRST = "closed, best-first"
 CIRCUMSCRIBED = ("circumscribed", "circumscribed so far")  # what --circumscribe gives
 KINDS = ("consistent", "best", "optimal", "best so far", *CIRCUMSCRIBED, BEST_FIRST, UNPROVED)
-BEST = ("optimal", "best so far")  # what --optimal gives
 
 
 @dataclass(frozen=True)

@@ -7,6 +7,7 @@ from topomap.documents import maps
 from topomap.documents.answers import map_json
 from topomap.drawing.scenes import of_document
 from topomap.exchange.exports import LISTS, graph_of
+from topomap.model.found import BEST
 from topomap.runtime import formats, nx
 from topomap.runtime.errors import InputError
 from topomap.runtime.files import read_bytes
@@ -55,7 +56,7 @@ def _document(file: str, graph: "nx.Graph[Any]") -> str:
         "slots": given["slots"],
         "parts": [],
         "bound": None,
-        "optimal": kind in maps.BEST,
+        "optimal": kind in BEST,
     }
     if "rests" in given:
         claims["rests"] = given["rests"]

@@ -6,12 +6,23 @@ class holds the map of a hypothesis and the map of a whole environment.
 """
 
 from collections import Counter
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from itertools import combinations
 from typing import Any
 
 Place = Any  # hashable, and sortable among the places of one map
 Gateway = tuple[Place, int]
+
+
+@dataclass(frozen=True)
+class Exceptional:
+    """An exception of a map to boundary consistency: its ``kind``, the ``paths`` that it is of, by
+    their numbers, and the ``places``."""
+
+    kind: str
+    paths: tuple[int, ...]
+    places: tuple[Place, ...]
 
 
 @dataclass(frozen=True)
@@ -105,22 +116,42 @@ class TopologicalMap:
                 return f"the path through place {label(places[0])} is circular"
         return None
 
+    def beside(self, path: Sequence[Gateway]) -> tuple[set[Place], set[Place]]:
+        """The places right and left of a path: where those come to who leave it to that side and
+        walk straight on (the SSH's boundary regions)."""
+        right: set[Place] = set()
+        left: set[Place] = set()
+        for place, heading in path:
+            for other in self.stars[place]:
+                turn = (other - heading) % self.slots
+                if turn % (self.slots // 2):
+                    side = right if turn < self.slots // 2 else left
+                    side.update(met for met, _ in self.straight_on((place, other)))
+        return right, left
+
+    def exceptions(self) -> Iterator[Exceptional]:
+        """What is not consistent about the boundaries (semantics: "What is preferred, also where no
+        map is perfect"): the pairs of paths that share two places or more, the paths that hold a
+        place twice, and each place that is both left and right of a path. Paths are numbered as
+        ``paths`` gives them."""
+        paths = self.paths()
+        on = [Counter(place for place, _ in path) for path in paths]
+        for (one, here), (other, there) in combinations(enumerate(on), 2):
+            shared = here.keys() & there.keys()
+            if len(shared) > 1:
+                yield Exceptional("meet twice", (one, other), tuple(sorted(shared)))
+        for number, places in enumerate(on):
+            again = sorted(place for place, times in places.items() if times > 1)
+            if again:
+                yield Exceptional("place twice", (number,), tuple(again))
+        for number, path in enumerate(paths):
+            right, left = self.beside(path)
+            for place in sorted(right & left):
+                yield Exceptional("both sides", (number,), (place,))
+
     def boundaries_consistent(self) -> bool:
-        """Whether no place is both left and right of a path, and none on it and beside it
-        (the SSH's boundary regions; semantics: "Boundary consistency")."""
-        for path in self.paths():
-            on = {place for place, _ in path}
-            left: set[Place] = set()
-            right: set[Place] = set()
-            for place, heading in path:
-                for other in self.stars[place]:
-                    turn = (other - heading) % self.slots
-                    if turn % (self.slots // 2):
-                        side = right if turn < self.slots // 2 else left
-                        side.update(met for met, _ in self.straight_on((place, other)))
-            if left & right or on & (left | right):
-                return False
-        return True
+        """Whether there is no exception (semantics: "Boundary consistency")."""
+        return next(self.exceptions(), None) is None
 
     def next(self, gateway: Gateway) -> Gateway:
         """The next link of the face walk: take the link out of ``gateway``, then the

@@ -9,11 +9,14 @@ PARTS = {
     "boundary": "no place is both left and right of a path, or on it and beside it",
     "perpendicular": "two paths meet at most once, and no three make a triangle",
     "genus": "maps with the least genus",
+    "exceptions": "maps with the fewest exceptions to consistent boundaries",
     "minimal": "maps with the fewest paths, then the fewest places",
+    "no_path_axiom": "a path may hold a place twice, and may be circular",
 }
-OPTIMIZING = {"genus", "minimal"}
+OPTIMIZING = {"genus", "exceptions", "minimal"}
+RELAXING = ("no_path_axiom",)  # they take a default away
 PRUNING = ("planar", "perpendicular")  # what has them has had them after each step
-DEMANDS = tuple(part for part in PARTS if part not in OPTIMIZING)
+DEMANDS = tuple(part for part in PARTS if part not in (*OPTIMIZING, *RELAXING))
 PROPERTIES = tuple(part for part in DEMANDS if part != "euler")  # which is another rule for planar
 FORMS = ("work", "paper")  # of the encoding: the one that does the work, and the statement
 STATED = {"planar", "closed", "travelled", "boundary", "perpendicular", "minimal"}  # its parts

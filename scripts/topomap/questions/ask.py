@@ -67,11 +67,14 @@ class Inquiry:
         if not optimal:
             self._settle(experience, query, query.kind, watch)
             return
-        best = query.having("boundary", "minimal")
-        self._settle(experience, best.having("closed"), "optimal", watch)
-        if not self.some:
-            self.some, self.kind = None, None  # that no map is closed does not settle it
-            self._settle(experience, best, "best so far", watch)
+        for closed, kind in ((("closed",), "optimal"), ((), "best so far")):
+            for preferred, before in (("boundary", (0,)), ("exceptions", ())):
+                asked = query.having(*closed, preferred, "minimal")
+                self.some, self.kind = None, None  # that there is none of a kind does not settle it
+                self._settle(experience, asked, kind, watch)
+                if self.some:
+                    self.cost = (*before, *self.cost)
+                    return
 
     def _settle(self, experience: Experience, query: Query, kind: str, watch: Watch) -> None:
         facts = "".join(f"ask({term}).\n" for term in self.terms)

@@ -21,11 +21,14 @@ class TooLarge(Exception):
 
 
 class Unforeseen(Hypothesis):
-    """A hypothesis of an experience with steps that are no travel, of which nothing is foretold."""
+    """A hypothesis of which nothing is foretold: of an experience with steps that are no travel, or
+    without the path axiom."""
 
     def __init__(self, experience: Experience, query: Query):
         planar = bool(query.parts & {"planar", "euler"})
-        super().__init__(experience, planar, query.places, "perpendicular" in query.parts)
+        path_axiom = "no_path_axiom" not in query.parts
+        perpendicular = "perpendicular" in query.parts
+        super().__init__(experience, planar, query.places, perpendicular, path_axiom)
 
     def least(self) -> tuple[int, int]:
         """How many paths and places each map below this node has at least, as far as is known."""
@@ -56,9 +59,8 @@ class Descent:
         if query.horizon is not None:
             experience = experience.cut(query.horizon)
         self.query = query
-        self.node = (
-            Unforeseen(experience, query) if experience.parted else LookAhead(experience, query)
-        )
+        unforeseen = experience.parted or "no_path_axiom" in query.parts
+        self.node = Unforeseen(experience, query) if unforeseen else LookAhead(experience, query)
         self.nodes = self.maps = 0
         self.passed = 0.0
         self._kind = kind or query.kind
@@ -194,10 +196,16 @@ class Descent:
         return self._of(self.node.least()) if self.query.optimizes else ()
 
     def _of(self, paths_and_places: tuple[int, int]) -> Cost:
-        """What the query minimises: the genus of the node's map, which no link makes less, and
-        these numbers of paths and places."""
-        genus = (self.node.genus,) if "genus" in self.query.parts else ()
-        return genus + (paths_and_places if "minimal" in self.query.parts else ())
+        """What the query minimises: the genus of the node's map, which no link makes less, its
+        exceptions, of which nothing is known before it is whole, and these numbers of paths and
+        places."""
+        node, parts = self.node, self.query.parts
+        genus = (node.genus,) if "genus" in parts else ()
+        exceptions: Cost = ()
+        if "exceptions" in parts:
+            whole = node.steps == node.experience.steps
+            exceptions = (sum(1 for _ in node.map.exceptions()) if whole else 0,)
+        return genus + exceptions + (paths_and_places if "minimal" in parts else ())
 
     def _here(self) -> Iterator[Found]:
         """The map of the node where the search stands, if it is one of the query, and, where it
@@ -227,5 +235,6 @@ def holds(node: Hypothesis, parts: Collection[str]) -> bool:
         ("euler" not in parts or node.genus == 0)
         and ("closed" not in parts or node.closed())
         and ("travelled" not in parts or node.travelled())
+        and ("perpendicular" not in parts or node.path_axiom or node.square())
         and ("boundary" not in parts or node.map.boundaries_consistent())
     )

@@ -50,7 +50,9 @@ class Hypothesis:
     between two faces, which planarity forbids, makes them one. ``paths`` holds of each path
     the set of its places, as bits; ``meets`` the set of the paths that it shares a place with.
 
-    With ``planar``, ``bound`` and ``perpendicular``, children that break these are dropped.
+    With ``planar``, ``bound`` and ``perpendicular``, children that break these are dropped. Without
+    the ``path_axiom`` a path may come back to a place of its own, and may be circular;
+    ``perpendicular`` then drops nothing, and is asked of the whole (``square``).
     """
 
     def __init__(
@@ -59,9 +61,11 @@ class Hypothesis:
         planar: bool = False,
         bound: int | None = None,
         perpendicular: bool = False,
+        path_axiom: bool = True,
     ):
         self.experience, self.slots = experience, experience.slots
         self.planar, self.bound, self.perpendicular = planar, bound, perpendicular
+        self.path_axiom = path_axiom
         self.stars: list[Face] = []  # of the place that a step makes, counter-clockwise
         self.views: dict[int, int] = {}  # of each gateway, the number of what is seen from it
         numbers: dict[Any, int] = {}
@@ -145,8 +149,10 @@ class Hypothesis:
         return not any(self.faces)
 
     def travelled(self) -> bool:
-        """Every path holds two places or more."""
-        return all(places & (places - 1) for places in self.paths.values())
+        """Every path has a link. (It then holds two places or more; but one place that it comes
+        back to at once is enough, where the path axiom does not hold.)"""
+        alone = [path for path, places in self.paths.items() if not places & (places - 1)]
+        return not alone or {*alone} <= {self.path(gateway) for gateway in self.links}
 
     def square(self) -> bool:
         """The map is qualitatively perpendicular (the paper, section IV)."""
@@ -329,6 +335,8 @@ class Hypothesis:
     def _joins(self, path: int, other: int) -> bool:
         """Whether a link may make these paths one: by the path axiom they are two and share no
         place; and a map that is to be ``perpendicular`` must stay so."""
+        if not self.path_axiom:
+            return True
         if self.paths[path] & self.paths[other]:
             return False
         return not self.perpendicular or self._squares(self.meets[path], self.meets[other])
@@ -391,18 +399,27 @@ class Hypothesis:
         self.matches += place != step
         self.links[out], self.links[arrival] = arrival, out
         path, other = self.path(out), self.path(arrival)
+        merged = parts[1] if self.parted and parts[0] != parts[1] else None
+        if path == other:  # it is circular now
+            kept = self.paths[path], self.meets[path]
+            return Link(out, arrival, path, path, faces, kept[0], kept[0], kept[1], kept[1], merged)
         places, more = self.paths[path], self.paths.pop(other)
         meets, met = self.meets[path], self.meets.pop(other)
         self._joined[other] = path
         self.paths[path] = places | more
-        self.meets[path] = meets | met
+        both = (1 << path) | (1 << other)
+        self.meets[path] = (meets | met) & ~both
+        self._cross(path, other, meets & ~both, met & ~both)
+        return Link(out, arrival, path, other, faces, places, more, meets, met, merged)
+
+    def _cross(self, path: int, other: int, meets: int, met: int) -> None:
+        """Of the paths that meet two others, ``meets`` the one and ``met`` the other, say that they
+        meet the one that these become; or take that back."""
         both = (1 << path) | (1 << other)
         for crossing in numbers(met & ~meets):
             self.meets[crossing] ^= both
         for crossing in numbers(met & meets):
             self.meets[crossing] ^= 1 << other
-        merged = parts[1] if self.parted and parts[0] != parts[1] else None
-        return Link(out, arrival, path, other, faces, places, more, meets, met, merged)
 
     def undo(self) -> None:
         """Go one step back."""
@@ -422,14 +439,14 @@ class Hypothesis:
         if link.part is not None:
             del self._part[link.part]
             self.components += arrival // self.slots != step
-        del self.links[link.out], self.links[arrival], self._joined[link.other]
-        self.paths[link.path], self.paths[link.other] = link.path_places, link.other_places
-        self.meets[link.path], self.meets[link.other] = link.path_meets, link.other_meets
-        both = (1 << link.path) | (1 << link.other)
-        for crossing in numbers(link.other_meets & ~link.path_meets):
-            self.meets[crossing] ^= both
-        for crossing in numbers(link.other_meets & link.path_meets):
-            self.meets[crossing] ^= 1 << link.other
+        del self.links[link.out], self.links[arrival]
+        if link.path != link.other:
+            del self._joined[link.other]
+            self.paths[link.path], self.paths[link.other] = link.path_places, link.other_places
+            self.meets[link.path], self.meets[link.other] = link.path_meets, link.other_meets
+            both = (1 << link.path) | (1 << link.other)
+            meets, met = link.path_meets & ~both, link.other_meets & ~both
+            self._cross(link.path, link.other, meets, met)
         self.faces = link.faces
         if arrival // self.slots == step:
             self._remove_place(step)

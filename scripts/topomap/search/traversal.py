@@ -23,7 +23,8 @@ def root(experience: Experience, query: Query) -> Hypothesis:
     if query.horizon is not None:
         experience = experience.cut(query.horizon)
     planar, perpendicular = (part in query.parts for part in PRUNING)
-    return Hypothesis(experience, planar, query.places, perpendicular)
+    path_axiom = "no_path_axiom" not in query.parts
+    return Hypothesis(experience, planar, query.places, perpendicular, path_axiom)
 
 
 @spared

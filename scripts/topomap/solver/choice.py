@@ -69,7 +69,7 @@ class Trial:
         watch.by, watch.least = CLINGO, None
         if query.encoding != "work" or query.noise is not None or experience.assumed:
             return
-        if experience.parted:
+        if experience.parted or "no_path_axiom" in query.parts:  # nothing is foretold of these
             return
         watch.by = SEARCH
         descent = Descent(experience, query, kind, self._heed)

@@ -21,6 +21,7 @@ from topomap.runtime.watch import Attempt, Watch
 from topomap.search.hypothesis import OFTEN, Hypothesis
 from topomap.search.traversal import root
 from topomap.solver.boundaries import Boundaries
+from topomap.solver.solving import best
 
 TRIED = 10  # times as many nodes are visited to tell that there are more
 MAPS = 100  # best maps that are kept
@@ -227,27 +228,50 @@ class OnlineSolver:
         return leaves, True
 
     def best(self, watch: Watch) -> tuple[str | None, tuple[int, ...], list[tuple[DState, ...]]]:
-        """The best maps, one more than ``MAPS`` at most: of what kind they are, and their cost."""
-        closed = _atom("closed", self.visits[-1])
-        for kind, assumed in (("optimal", [(closed, True)]), ("best so far", [])):
-            found: list[tuple[DState, ...]] = []
-            cost: list[int] = []
+        """The best maps, one more than ``MAPS`` at most: of what kind they are, and their cost.
 
-            def take(model: clingo.Model, found: Any = found, cost: Any = cost) -> bool:
-                if model.optimality_proven:
-                    cost[:] = model.cost
-                    found.append(self._dstates(model))
-                return len(found) <= MAPS
-
-            self._configure("auto", "optN")
-            self._control.assign_external(_atom("consistent"), True)
-            try:
-                self._solve(watch, assumed, take)
-            finally:
-                self._control.assign_external(_atom("consistent"), False)
+        Maps without exceptions to consistent boundaries are looked for step by step. Where all
+        closed maps have some, or all maps, the best ones are found anew, of the whole."""
+        closed = [(_atom("closed", self.visits[-1]), True)]
+        for kind, assumed in (("optimal", closed), ("best so far", [])):
+            cost, found = self._best(watch, assumed, consistent=True)
             if found:
-                return kind, tuple(cost), sorted(found)
+                return kind, (0, *cost), sorted(found)
+            if self._best(watch, assumed, consistent=False, most=1)[1]:
+                maps = []
+                for one in best(self.experience, self._query, watch):
+                    if one and one.proved:
+                        maps.append(one)
+                        if len(maps) > MAPS:
+                            break
+                return maps[0].kind, maps[0].cost, sorted(one.at for one in maps)
         return None, (), []
+
+    def _best(
+        self,
+        watch: Watch,
+        assumed: Sequence[tuple[clingo.Symbol, bool]],
+        consistent: bool,
+        most: int = MAPS + 1,
+    ) -> tuple[tuple[int, ...], list[tuple[DState, ...]]]:
+        """Maps with the fewest paths, then the fewest places, with ``consistent`` boundaries or of
+        any kind, at ``most`` so many; and what they cost."""
+        found: list[tuple[DState, ...]] = []
+        cost: list[int] = []
+
+        def take(model: clingo.Model) -> bool:
+            if model.optimality_proven or not consistent:
+                cost[:] = model.cost
+                found.append(self._dstates(model))
+            return len(found) < most
+
+        self._configure("auto", "optN" if consistent else "ignore")
+        self._control.assign_external(_atom("consistent"), consistent)
+        try:
+            self._solve(watch, assumed, take)
+        finally:
+            self._control.assign_external(_atom("consistent"), False)
+        return tuple(cost), found
 
     def certain(self, watch: Watch) -> Certain:
         """What holds in all hypotheses; nothing, if there is none."""

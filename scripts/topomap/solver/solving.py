@@ -88,29 +88,37 @@ Way = Callable[..., Iterator[Found | None]]  # hypotheses, here or by search
 def best(
     experience: Experience, query: Query, watch: Watch, way: Way = hypotheses
 ) -> Iterator[Found | None]:
-    """The best maps (semantics: "optimal" and "best so far"), as ``hypotheses`` gives them.
+    """The best maps (semantics: "What is preferred, also where no map is perfect"), as
+    ``hypotheses`` gives them, with what they cost: exceptions, paths and places.
 
-    ``optimal``: closed, with consistent boundaries, fewest paths, then fewest places;
-    where there is none, ``best so far``: the same, pending gateways allowed. If views may be
-    wrong, maps that disbelieve more than another one are neither.
+    ``optimal``: closed, with the fewest exceptions to consistent boundaries, then the fewest paths,
+    then the fewest places; where no map is closed, ``best so far``: the same, pending gateways
+    allowed. If views may be wrong, maps that disbelieve more than another one are neither.
+
+    Maps without exceptions are looked for first: that prunes, and mostly there are some.
     """
     least: tuple[int, ...] = ()
     if query.noise is not None:
-        cheapest = _first_proved(way(experience, query.having("boundary"), watch))
+        cheapest = _first_proved(way(experience, query, watch))
         if cheapest is None:
             return
         least = cheapest.cost[:2]
         query = replace(query, noise=least[0])
-    optimal = filter(
-        lambda found: found and found.cost[: len(least)] == least,
-        way(experience, query.having("closed", "boundary", "minimal"), watch, "optimal"),
-    )
-    first = next(optimal, None)
-    if first is not None:
-        yield first
-        yield from optimal
-    else:
-        yield from way(experience, query.having("boundary", "minimal"), watch, "best so far")
+    for kind, closed in (("optimal", ("closed",)), ("best so far", ())):
+        for preferred, before in (("boundary", (0,)), ("exceptions", ())):
+            some = False
+            asked = query.having(*closed, preferred, "minimal")
+            try:
+                for found in way(experience, asked, watch, kind):
+                    if found and found.cost[: len(least)] == least:
+                        some = True
+                        rest = found.cost[len(least) :]
+                        yield replace(found, cost=(*least, *before, *rest))
+            finally:
+                if watch.least is not None:
+                    watch.least = (*before, *watch.least)
+            if some:
+                return
 
 
 def _first_proved(maps: Iterator[Found | None]) -> Found | None:

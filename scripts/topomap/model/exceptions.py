@@ -1,0 +1,71 @@
+"""The exceptions of a map to consistent boundaries, each with the paths that it is of.
+
+A path is named by the first step that travels along it; one that no step travels, by a gateway of
+its only place, as in ``4.1``.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from topomap.model.experience import DState, Experience
+from topomap.model.topology import gid
+from topomap.model.words import plural
+
+Name = int | str  # of a path
+
+
+@dataclass(frozen=True)
+class NamedException:
+    """An exception: its ``kind`` (``meet twice``, ``place twice`` or ``both sides``), the names of
+    its ``paths``, and the ``places`` (semantics: "What is preferred, also where no map is
+    perfect")."""
+
+    kind: str
+    paths: tuple[Name, ...]
+    places: tuple[int, ...]
+
+    @property
+    def words(self) -> str:
+        """The exception in words, such as "paths 2 and 6 meet twice, at places 1 and 4"."""
+        paths, places = _listed(self.paths), _listed(self.places)
+        noun = plural(len(self.places), "place")
+        if self.kind == "meet twice":
+            return f"paths {paths} meet twice, at {noun} {places}"
+        if self.kind == "place twice":
+            return f"path {paths} holds {noun} {places} twice"
+        return f"place {places} is left and right of path {paths}"
+
+    def document(self) -> dict[str, Any]:
+        """The exception as JSON."""
+        return {"kind": self.kind, "paths": self.paths, "places": self.places}
+
+
+def exceptions_of(experience: Experience, at: Sequence[DState]) -> list[NamedException]:
+    """The exceptions of the map of a hypothesis, given by its dstate after each step."""
+    world = experience.map_of(tuple(at))
+    found = list(world.exceptions())
+    if not found:
+        return []
+    steps: dict[DState, int] = {}  # the first one along each axis, in either direction
+    for step, (turn, (place, slot)) in enumerate(zip(experience.turns, at, strict=False), 1):
+        if turn is not None:
+            out = place, (slot + turn) % world.slots
+            for gateway in (out, world.opposite(out)):
+                steps.setdefault(gateway, step)
+            for gateway in (at[step], world.opposite(at[step])):
+                steps.setdefault(gateway, step)
+    names: list[Name] = [
+        min((steps[dstate] for dstate in path if dstate in steps), default=0) or gid(path[0])
+        for path in world.paths()
+    ]
+    return [
+        NamedException(one.kind, tuple(names[path] for path in one.paths), one.places)
+        for one in found
+    ]
+
+
+def _listed(names: Sequence[Name]) -> str:
+    """Such as "1, 3 and 4"."""
+    *first, last = map(str, names)
+    return f"{', '.join(first)} and {last}" if first else last
