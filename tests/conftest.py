@@ -184,7 +184,8 @@ class Truth:
     def least(self, key, hypotheses):
         """Those of the hypotheses whose figure is least."""
         figures = {at: key(self.final[at]) for at in hypotheses}
-        return {at for at, figure in figures.items() if figure == min(figures.values())}
+        fewest = min(figures.values())
+        return {at for at, figure in figures.items() if figure == fewest}
 
     def best(self, closed):
         return best(self.experience, self.final, closed)
