@@ -88,6 +88,7 @@ def beyond(facts):
         "lengths": "length",
         "closures": "same|apart",
         "logs": "start|look",
+        "straight": "straight",
     }
     told = {file for file, names in files.items() if re.search(rf"\b(?:{names})\(", facts)}
     return [f"beyond/{file}" for file in files if file in told]
@@ -109,6 +110,8 @@ def costs(parts, facts, *arguments, encoding="work"):
     options = ["0", *arguments]
     control = clingo.Control(options, logger=lambda _, text: messages.append(text))
     more = beyond(facts) if encoding == "paper" else []
+    if encoding == "paper" and any(one.startswith("tolerance=") for one in arguments):
+        more.append("beyond/tolerance")
     for part in ("topomap", *more, *parts):
         control.load(str(FORMS[encoding] / f"{part}.lp"))
     control.add("base", [], facts)
