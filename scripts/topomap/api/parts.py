@@ -107,7 +107,7 @@ def begin(experience: Experience, timeout: float | None, noisy: bool = False) ->
     allows what may be a misreading; ValueError if the time limit is no number of seconds."""
     demand_experience(experience)
     limit = seconds("timeout", timeout)
-    measured = experience.drift, experience.stretch
+    measured = experience.drift, experience.stretch, experience.tolerance
     parse(experience.facts(), "the experience, as facts", noisy, *measured)
     for term, holds in sorted(experience.assumed):
         parse_statement(statement_text(term, holds), experience, "assumed")

@@ -181,6 +181,12 @@ def add_known(command: Parser) -> None:
         "'places < 12', as in topomap ask --help; can be given several times",
     )
     add_measured(command)
+    add(
+        "--tolerance",
+        type=number(int, 0),
+        metavar="N",
+        help="bearings may be wrong by N slots: a place keeps those of its first visit (default: 0)",
+    )
 
 
 def add_measured(command: Parser) -> None:

@@ -23,7 +23,11 @@ def experience_of(args: argparse.Namespace, path: str, noisy: bool = False) -> "
     """The experience in an instance file, with what is taken for granted. Raises InputError."""
     from topomap.model import facts
 
-    return known(args, facts.read(path, noisy, args.drift, args.stretch))
+    return known(args, facts.read(path, noisy, *_measured(args)))
+
+
+def _measured(args: argparse.Namespace) -> tuple[int | None, int | None, int | None]:
+    return args.drift, args.stretch, args.tolerance
 
 
 def known_options(args: argparse.Namespace) -> list[str]:
@@ -31,7 +35,7 @@ def known_options(args: argparse.Namespace) -> list[str]:
     told = [("--assume", text) for text in args.assume or ()]
     told += [
         (f"--{name}", str(value))
-        for name in ("drift", "stretch")
+        for name in ("drift", "stretch", "tolerance")
         if (value := getattr(args, name)) is not None
     ]
     return [word for pair in told for word in pair]
@@ -41,7 +45,7 @@ def parsed(args: argparse.Namespace, text: str, source: str) -> "Experience":
     """The same of the text of an instance, which ``source`` names."""
     from topomap.model import facts
 
-    return known(args, facts.parse(text, source, False, args.drift, args.stretch))
+    return known(args, facts.parse(text, source, False, *_measured(args)))
 
 
 def known(args: argparse.Namespace, experience: "Experience") -> "Experience":

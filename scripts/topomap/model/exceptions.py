@@ -50,13 +50,13 @@ def exceptions_of(experience: Experience, at: Sequence[DState]) -> list[NamedExc
     steps: dict[DState, int] = {}  # the first one along each axis, in either direction
     for step, (turn, (place, slot)) in enumerate(zip(experience.turns, at, strict=False), 1):
         if turn is not None:
-            out = place, (slot + turn) % world.slots
+            out = experience.way_out(step, (place, slot))
             for gateway in (out, world.opposite(out)):
                 steps.setdefault(gateway, step)
             for gateway in (at[step], world.opposite(at[step])):
                 steps.setdefault(gateway, step)
     names: list[Name] = [
-        min((steps[dstate] for dstate in path if dstate in steps), default=0) or gid(path[0])
+        min((steps[dstate] for dstate in path if dstate in steps), default=0) or gid((path[0][0], world.bearing(path[0])))
         for path in world.paths()
     ]
     return [

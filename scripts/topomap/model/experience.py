@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Container, Iterable, Iterator
 from dataclasses import dataclass, fields
+from itertools import pairwise
 from typing import Any, TypeVar
 
 from topomap.model.terms import spelt
@@ -17,6 +18,7 @@ MARKER = ("drop", "pick", "marker")
 Shift = tuple[int, int]  # how far a step moved the agent, in one fixed frame
 Thing = tuple[str, int, str]  # one of MARKER, a step, and the name of a marker
 Visits = tuple[int, int]  # two visits, each named by its step, the earlier one first
+Slots = tuple[int, int]  # of two gateways of one visit, the lower one first
 
 
 @dataclass(frozen=True)
@@ -42,6 +44,7 @@ class Step:
     start: bool = False
     look: bool = False
     things: frozenset[tuple[str, str]] = frozenset()  # one of MARKER, and the name
+    straight: frozenset[Slots] | None = None  # None where no pairs of gateways are told
 
 
 @dataclass(frozen=True, init=False)
@@ -67,6 +70,11 @@ class Experience:
     a new log of the same world begins, and after those of ``looks`` the agent looks a second time;
     the turn of both is None. ``things`` are what is done with markers that have names, beside the
     one that has none: ``("drop", 4, "coin")``.
+
+    ``straight[t]`` holds the pairs of gateways, as slots of ``views[t]``, that are on one path
+    (semantics: "Which gateways are on one path"); a gateway that is in none ends its path. If it is
+    empty, opposite gateways are on one path. Bearings may be wrong by ``tolerance`` slots
+    (semantics: "Bearings that are not exact").
     """
 
     slots: int
@@ -87,6 +95,8 @@ class Experience:
     starts: frozenset[int]
     looks: frozenset[int]
     things: frozenset[Thing]
+    straight: tuple[frozenset[Slots], ...]
+    tolerance: int
 
     def __init__(
         self,
@@ -109,6 +119,8 @@ class Experience:
         starts: Iterable[int] = (),
         looks: Iterable[int] = (),
         things: Iterable[Thing] = (),
+        straight: Iterable[Iterable[Slots]] = (),
+        tolerance: int = 0,
     ):
         """What was seen and done. Whether it can be so is told when it is first used: by
         InputError, with the step, as for a file.
@@ -134,6 +146,9 @@ class Experience:
                 either kind is None.
             things: what is done with markers that have names, once more, as it is kept:
                 ``("drop", step, name)``, or ``"pick"``, ``"marker"``; a name is a term of clingo.
+            straight: the pairs of slots whose gateways are on one path, at each visit, from 0; by
+                default those of opposite gateways.
+            tolerance: by how many slots bearings may be wrong.
 
         Raises:
             ValueError: there is not one view more than turns, or not as many sets of landmarks;
@@ -186,7 +201,7 @@ class Experience:
         values = (
             *(integer("slots", slots), seen, done, signs, *marks),
             *(north, moved, measured, *pairs, *percents, _assumed(assumed)),
-            *(*rests, frozenset(every)),
+            *(*rests, frozenset(every), _straight(straight, many), whole("tolerance", tolerance, 0)),
         )
         for one, value in zip(fields(self), values, strict=True):
             object.__setattr__(self, one.name, value)
@@ -216,16 +231,23 @@ class Experience:
             shifts=_told(self.shifts[:horizon]),
             lengths=_told(self.lengths[:horizon]),
             things=things,
+            straight=self.straight[: horizon + 1],
             **marks,
             **pairs,
         )
 
-    def within(self, drift: int | None = None, stretch: int | None = None) -> "Experience":
-        """The same experience, where shifts may be wrong by ``drift`` percent and lengths by
-        ``stretch`` percent (None: as before)."""
+    def within(
+        self,
+        drift: int | None = None,
+        stretch: int | None = None,
+        tolerance: int | None = None,
+    ) -> "Experience":
+        """The same experience, where shifts may be wrong by ``drift`` percent, lengths by
+        ``stretch`` percent, and bearings by ``tolerance`` slots (None: as before)."""
         changed = {
             "drift": whole_if_given("drift", drift, 0),
             "stretch": whole_if_given("stretch", stretch, 0),
+            "tolerance": whole_if_given("tolerance", tolerance, 0),
         }
         return self._but(**{key: value for key, value in changed.items() if value is not None})
 
@@ -252,9 +274,11 @@ class Experience:
         )
 
     def constants(self) -> list[str]:
-        """The options of clingo that tell how far shifts and lengths may be wrong."""
+        """The options of clingo that tell how far shifts, lengths and bearings may be wrong."""
         told = [f"drift={self.drift}"] * bool(self.shifts)
         told += [f"stretch={self.stretch}"] * bool(self.lengths)
+        # No two slots are further apart than all of them.
+        told += [f"tolerance={min(self.tolerance, self.slots)}"] * bool(self.tolerance)
         return [option for one in told for option in ("-c", one)]
 
     def compass_told(self) -> int:
@@ -283,6 +307,7 @@ class Experience:
             starts=self.starts | {last} if step.start else self.starts,
             looks=self.looks | {last} if step.look else self.looks,
             things=self.things | {(kind, last, name) for kind, name in step.things},
+            straight=(*self.straight, step.straight or frozenset()) if self.straight else (),
         )
 
     def _but(self, **changed: object) -> "Experience":
@@ -395,7 +420,16 @@ class Experience:
         line += sorted(f"{kind}({named},{name})." for kind, at, name in self.things if at == step)
         for name, numbers in self.measured(step):
             line.append(f"{name}({','.join(map(str, (named, *numbers)))}).")
+        line += [f"straight({named},{one},{other})." for one, other in self._pairs_told(step)]
         return line
+
+    def _pairs_told(self, step: int) -> list[Slots]:
+        """The pairs of gateways that are told of a visit. If there are none at all, it is told of a
+        gateway of step 0 that it ends its path, so that opposite gateways are not taken to be on
+        one."""
+        if not self.straight or step or any(self.straight):
+            return sorted(self.straight[step]) if self.straight else []
+        return [(slot, slot) for slot in sorted(self.views[0])[:1]]
 
     def measured(self, step: int) -> Iterator[tuple[str, tuple[int, ...]]]:
         """What is measured of a step: the name of the fact, and its numbers but for the step."""
@@ -410,13 +444,75 @@ class Experience:
         """The map of a hypothesis, given the dstate after each step (``at/3``)."""
         stars = {place: self.views[place] for place, _ in at}
         links: dict[Gateway, Gateway] = {}
-        for turn, (place, slot), arrival in zip(self.turns, at, at[1:], strict=False):
-            if turn is None:
-                continue
-            out = place, (slot + turn) % self.slots
-            links[out], links[arrival] = arrival, out
+        for step, (before, arrival) in enumerate(pairwise(at), 1):
+            if self.turns[step - 1] is not None:
+                out = self.way_out(step, before)
+                links[out], links[arrival] = arrival, out
         landmarks = {place: self.landmarks[place] for place in stars}
-        return TopologicalMap(self.slots, stars, links, landmarks)
+        return TopologicalMap(self.slots, stars, links, landmarks, self.across(stars))
+
+    def across(self, places: Iterable[int]) -> dict[Gateway, Gateway] | None:
+        """The other gateway on the path of each gateway that is not an end of it, at these places;
+        None if opposite gateways are on one path."""
+        if not self.straight:
+            return None
+        return {
+            (place, one): (place, other)
+            for place in places
+            for pair in self.straight[place]
+            for one, other in (pair, pair[::-1])
+        }
+
+    def goes_straight(self, step: int) -> bool:
+        """Whether a travel leaves by the gateway that is on one path with the gateway of the arrival
+        before it."""
+        turn = self.turns[step - 1]
+        if not self.straight:
+            return turn == self.slots // 2
+        return bool(turn) and (0, turn) in self.straight[step - 1]
+
+    def way_out(self, step: int, before: DState) -> DState:
+        """The gateway by which a travel leaves the dstate where the agent stood before it."""
+        turn, (place, slot) = self.turns[step - 1], before
+        assert turn is not None
+        return place, self.slot_at(place, slot, step - 1, turn)
+
+    def slot_at(self, place: int, slot: int, visit: int, seen: int) -> int:
+        """The slot of the gateway of a place that a visit sees in the slot ``seen``, if it stands at
+        the place's gateway ``slot``. Where bearings are not exact, the gateways of both are
+        numbered clockwise."""
+        if not self.tolerance:
+            return (slot + seen) % self.slots
+        star, view = sorted(self.views[place]), sorted(self.views[visit])
+        return star[(star.index(slot) + view.index(seen)) % len(star)]
+
+    def alike(self, place: int, slot: int, visit: int) -> bool:
+        """Whether what a visit sees is what is seen from gateway ``slot`` of a place: as many
+        gateways, within the tolerance, those of the same pairs on one path, and the same
+        landmarks."""
+        same = self.landmarks[place] == self.landmarks[visit]
+        return same and self.looks_alike(place, slot, visit)
+
+    def looks_alike(self, place: int, slot: int, visit: int) -> bool:
+        """The same, whatever the landmarks."""
+        star, view = self.views[place], self.views[visit]
+        if len(star) != len(view):
+            return False
+        there = {seen: self.slot_at(place, slot, visit, seen) for seen in view}
+        if any(other not in star for other in there.values()):
+            return False
+        off = ((other - slot - seen) % self.slots for seen, other in there.items())
+        if any(min(wrong, self.slots - wrong) > self.tolerance for wrong in off):
+            return False
+        here = {frozenset(there[seen] for seen in pair) for pair in self.pairs(visit)}
+        return here == {*map(frozenset, self.pairs(place))}
+
+    def pairs(self, visit: int) -> Iterable[Slots]:
+        """The pairs of gateways of a visit that are on one path."""
+        if self.straight:
+            return self.straight[visit]
+        half, view = self.slots // 2, self.views[visit]
+        return [(slot, slot + half) for slot in view if slot + half in view]
 
 
 T = TypeVar("T")
@@ -496,6 +592,24 @@ def _assumed(given: Iterable[tuple[str, bool]]) -> frozenset[tuple[str, bool]]:
         (term,) = _terms("assumed", [one[0]])
         told.add((term, one[1]))
     return frozenset(told)
+
+
+def _straight(
+    given: Iterable[Iterable[Slots]], many: int
+) -> tuple[frozenset[Slots], ...]:
+    """Of each visit the pairs of slots that are on one path, the lower one first."""
+    told = []
+    for step, of in enumerate(collection("straight", given)):
+        name = f"straight[{step}]"
+        pairs = set()
+        for pair in collection(name, of):
+            one, other = (integer(f"{name}: slot", slot) for slot in _two(name, pair, "two slots"))
+            if one != other:  # else it is told of a gateway that it ends its path
+                pairs.add((min(one, other), max(one, other)))
+        told.append(frozenset(pairs))
+    if told and len(told) != many:
+        raise ValueError(f"straight: {len(told)} are given, {many} are wanted")
+    return tuple(told)
 
 
 def _thing(given: Thing, last: int) -> Thing:

@@ -2,7 +2,7 @@
 
 An instance file is data: ground facts ``slots/1``, ``view/2``, ``turn/2``, ``landmark/2``,
 ``start/1``, ``look/1``, ``drop/1``, ``pick/1``, ``marker/1`` (these three also with the name of a
-marker), ``compass/2``, ``shift/3``, ``length/2``, ``same/2`` and ``apart/2`` (see
+marker), ``compass/2``, ``shift/3``, ``length/2``, ``straight/3``, ``same/2`` and ``apart/2`` (see
 ``encodings/topomap.lp``), and comments. Anything else is refused.
 """
 
@@ -39,6 +39,7 @@ SIGNATURES = {  # the facts of an instance
     "compass": "compass(T,S)",
     "shift": "shift(T,X,Y)",
     "length": "length(T,D)",
+    "straight": "straight(T,S,R)",
     "same": "same(T,U)",
     "apart": "apart(T,U)",
     "start": "start(T)",
@@ -47,6 +48,7 @@ SIGNATURES = {  # the facts of an instance
 WHOLE = {  # of the other facts, the steps are such numbers
     "slots": "K is a whole number",
     **dict.fromkeys(("view", "turn", "compass"), "a step and a slot are whole numbers"),
+    "straight": "a step and two slots are whole numbers",
     "shift": "a step, and how far it moved, are whole numbers",
     "length": "a step and its length are whole numbers",
 }
@@ -57,13 +59,17 @@ HINT = " (misread? solve --noise allows for that)"
 
 
 def read(
-    path: str | Path, noisy: bool = False, drift: int | None = None, stretch: int | None = None
+    path: str | Path,
+    noisy: bool = False,
+    drift: int | None = None,
+    stretch: int | None = None,
+    tolerance: int | None = None,
 ) -> Experience:
     """The experience in an instance file; a ``noisy`` one may turn to gateways that were not
     seen, and views may lack slot 0; shifts and lengths may be wrong by ``drift`` and ``stretch``
-    percent. Raises InputError, one line, on bad input: the first of the faults that
+    percent, and bearings by ``tolerance`` slots. Raises InputError, one line, on bad input: the first of the faults that
     ``Facts.faults`` finds."""
-    return parse(files.read_text(path), str(path), noisy, drift, stretch)
+    return parse(files.read_text(path), str(path), noisy, drift, stretch, tolerance)
 
 
 def parse(
@@ -72,6 +78,7 @@ def parse(
     noisy: bool = False,
     drift: int | None = None,
     stretch: int | None = None,
+    tolerance: int | None = None,
 ) -> Experience:
     """The experience in the text of an instance; ``source`` names it in errors."""
     facts = Facts(
@@ -79,7 +86,10 @@ def parse(
     )
     for fault in facts.faults(text, noisy):
         raise InputError(fault.of(source))
-    return facts.experience()
+    seen = facts.experience()
+    if tolerance and noisy:
+        raise InputError(f"{source}: misreadings are of slots, which are exact: no tolerance")
+    return seen.within(tolerance=tolerance)
 
 
 @dataclass(frozen=True)
@@ -106,7 +116,7 @@ class Facts:
 
     ``views[t]``, ``turns[t]`` and ``landmarks[t]`` hold what is told of step t, ``marks`` the
     steps of each name of MARKER, ``steps`` each step of which anything is told. ``known[name][t]``
-    holds the numbers that are told by compass/2, shift/3 or length/2, and ``pairs[name]`` the
+    holds the numbers that are told by compass/2, shift/3, length/2 or straight/3, and ``pairs[name]`` the
     pairs of same/2 or apart/2, as they are told; ``rests[name]`` the steps of start/1 or look/1,
     and ``things`` what is done with markers that have names. ``unread`` is the number of statements
     that are no facts of an instance. ``drift`` and ``stretch`` are the
@@ -120,7 +130,7 @@ class Facts:
     landmarks: dict[int, dict[str, int]] = field(default_factory=dict)
     marks: dict[str, dict[int, int]] = field(default_factory=lambda: {name: {} for name in MARKER})
     known: dict[str, dict[int, dict[tuple[int, ...], int]]] = field(
-        default_factory=lambda: {name: {} for name in ("compass", "shift", "length")}
+        default_factory=lambda: {name: {} for name in ("compass", "shift", "length", "straight")}
     )
     pairs: dict[str, dict[tuple[int, int], int]] = field(
         default_factory=lambda: {name: {} for name in PAIRS}
@@ -215,6 +225,7 @@ class Facts:
             yield from self._turn_faults(step, slots, noisy)
             yield from self._view_faults(step, slots, noisy, turned)
             yield from self._known_faults(step, slots)
+            yield from self._pair_faults(step, slots, noisy)
             for name in sorted(names, key=str) if whole else ():
                 marks = self._marks(name, step)
                 if marks and (fault := marker_fault(marks, out[name], name)):
@@ -291,6 +302,25 @@ class Facts:
         if told_apart := self.pairs["apart"].get((step, step)):
             yield Fault("it is told to be of another place than itself", told_apart, step)
 
+    def _pair_faults(self, step: int, slots: int | None, noisy: bool) -> Iterator[Fault]:
+        view = self.views.get(step, {})
+        others: dict[int, set[int]] = {}
+        for (one, other), line in self.known["straight"].get(step, {}).items():
+            for slot, end in (one, other), (other, one):
+                known = others.setdefault(slot, set())
+                if slots is not None and not 0 <= slot < slots:
+                    yield Fault(f"slot {slot} is not in 0..{slots - 1}", line, step)
+                elif not noisy and slot not in view:
+                    said = f"straight({step},{one},{other}): no gateway in slot {slot}{HINT}"
+                    yield Fault(said, line, step, lacks=True)
+                elif known - {end}:
+                    yield Fault(f"gateway {slot} is in more than one pair", line, step)
+                else:
+                    known.add(end)
+                    if one != other:
+                        continue
+                break
+
     def _far(self) -> Iterator[Fault]:
         """The first step up to which the shifts are too much."""
         most = LARGEST // max(100, self.drift)
@@ -319,6 +349,9 @@ class Facts:
             compass=self._each("compass", steps),
             shifts=self._each("shift", steps[1:]),
             lengths=self._each("length", steps[1:]),
+            straight=[self.known["straight"].get(step, ()) for step in steps]
+            if self.known["straight"]
+            else (),
             same=self.pairs["same"],
             apart=self.pairs["apart"],
             starts=rests["start"],

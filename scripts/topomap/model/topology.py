@@ -31,13 +31,16 @@ class TopologicalMap:
 
     ``stars`` gives the gateways of each place; ``links`` gives the gateway at the
     other end of each linked gateway, in both directions; ``landmarks`` the landmarks
-    recognised at a place, as text.
+    recognised at a place, as text. ``across`` gives for gateways the other one of the place that is
+    on the same path, in both directions; a gateway that is not in it ends its path. If it is None,
+    opposite gateways are on one path.
     """
 
     slots: int
     stars: Mapping[Place, frozenset[int]]
     links: Mapping[Gateway, Gateway]
     landmarks: Mapping[Place, frozenset[str]] = field(default_factory=dict)
+    across: Mapping[Gateway, Gateway] | None = None
 
     def gateways(self) -> Iterator[Gateway]:
         """All gateways, by place and slot."""
@@ -64,10 +67,39 @@ class TopologicalMap:
         place, slot = gateway
         return frozenset((other - slot) % self.slots for other in self.stars[place])
 
-    def opposite(self, gateway: Gateway) -> Gateway:
-        """The gateway or bare direction straight across the place."""
+    def pairs(self, gateway: Gateway) -> frozenset[tuple[int, int]] | None:
+        """Which gateways of the place are on one path, as slots clockwise from the one stood at;
+        None if opposite ones are."""
+        if self.across is None:
+            return None
         place, slot = gateway
-        return place, (slot + self.slots // 2) % self.slots
+        return frozenset(
+            ((one - slot) % self.slots, (end[1] - slot) % self.slots)
+            for one in self.stars[place]
+            for end in [self.across.get((place, one))]
+            if end is not None
+        )
+
+    def opposite(self, gateway: Gateway) -> Gateway:
+        """The gateway or bare direction straight across the place. Where it is told which gateways
+        are on one path (``across``), the direction of a path that ends at gateway S is the number
+        -1 - S, as another path may have a gateway there."""
+        place, slot = gateway
+        if self.across is None:
+            return place, (slot + self.slots // 2) % self.slots
+        return self.across.get(gateway, (place, -1 - slot))
+
+    def bearing(self, heading: Gateway) -> int:
+        """The slot of a gateway, or of a bare direction."""
+        slot = heading[1]
+        return slot if slot >= 0 else (self.slots // 2 - 1 - slot) % self.slots
+
+    def headings(self) -> list[list[Gateway]]:
+        """The paths, with the slot of each heading."""
+        paths = self.paths()
+        if self.across is None:
+            return paths
+        return [[(end[0], self.bearing(end)) for end in path] for path in paths]
 
     def straight_on(self, gateway: Gateway) -> list[Gateway]:
         """Gateways of arrival on the walk that leaves by ``gateway`` and goes straight
@@ -118,14 +150,17 @@ class TopologicalMap:
 
     def beside(self, path: Sequence[Gateway]) -> tuple[set[Place], set[Place]]:
         """The places right and left of a path: where those come to who leave it to that side and
-        walk straight on (the SSH's boundary regions)."""
+        walk straight on (the SSH's boundary regions). A gateway in the very slot of the heading, or
+        of what is behind, is on neither side."""
         right: set[Place] = set()
         left: set[Place] = set()
-        for place, heading in path:
+        for heading in path:
+            place, ahead = heading[0], self.bearing(heading)
+            behind = (self.bearing(self.opposite(heading)) - ahead) % self.slots
             for other in self.stars[place]:
-                turn = (other - heading) % self.slots
-                if turn % (self.slots // 2):
-                    side = right if turn < self.slots // 2 else left
+                turn = (other - ahead) % self.slots
+                if turn not in (0, behind):
+                    side = right if turn < behind else left
                     side.update(met for met, _ in self.straight_on((place, other)))
         return right, left
 
@@ -211,6 +246,7 @@ class TopologicalMap:
                 {place: self.stars[place] for place in part},
                 {out: end for out, end in self.links.items() if out[0] in {*part}},
                 {place: signs for place, signs in self.landmarks.items() if place in {*part}},
+                self.across,
             )
             for part in components
         ]
@@ -231,7 +267,7 @@ class TopologicalMap:
         seen = {(mine, theirs)}
         for here, there in (waiting := list(seen)):
             (place, slot), (image, at) = here, there
-            if self.view(here) != other.view(there):
+            if self.view(here) != other.view(there) or self.pairs(here) != other.pairs(there):
                 return False
             if self.landmarks.get(place, frozenset()) != other.landmarks.get(image, frozenset()):
                 return False
@@ -256,6 +292,8 @@ class TopologicalMap:
                     return False
                 continue
             if target in used or self.view((place, slot)) != other.view((target, at)):
+                return False
+            if self.pairs((place, slot)) != other.pairs((target, at)):
                 return False
             if self.landmarks.get(place, frozenset()) != other.landmarks.get(target, frozenset()):
                 return False

@@ -19,7 +19,8 @@ PRUNING = ("planar", "perpendicular")  # what has them has had them after each s
 DEMANDS = tuple(part for part in PARTS if part not in (*OPTIMIZING, *RELAXING))
 PROPERTIES = tuple(part for part in DEMANDS if part != "euler")  # which is another rule for planar
 FORMS = ("work", "paper")  # of the encoding: the one that does the work, and the statement
-STATED = {"planar", "closed", "travelled", "boundary", "perpendicular", "minimal"}  # its parts
+BEYOND = {"exceptions", "no_path_axiom"}  # the parts of encodings/paper/beyond/
+STATED = {"planar", "closed", "travelled", "boundary", "perpendicular", "minimal"} | BEYOND
 
 # What each argument is: a step, or a slot counted clockwise of where the agent stood after
 # the step before it.

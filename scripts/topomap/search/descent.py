@@ -21,8 +21,8 @@ class TooLarge(Exception):
 
 
 class Unforeseen(Hypothesis):
-    """A hypothesis of which nothing is foretold: of an experience with steps that are no travel, or
-    without the path axiom."""
+    """A hypothesis of which nothing is foretold: of an experience with steps that are no travel or
+    with bearings that are not exact, or without the path axiom."""
 
     def __init__(self, experience: Experience, query: Query):
         planar = bool(query.parts & {"planar", "euler"})
@@ -59,7 +59,7 @@ class Descent:
         if query.horizon is not None:
             experience = experience.cut(query.horizon)
         self.query = query
-        unforeseen = experience.parted or "no_path_axiom" in query.parts
+        unforeseen = experience.parted or experience.tolerance or "no_path_axiom" in query.parts
         self.node = Unforeseen(experience, query) if unforeseen else LookAhead(experience, query)
         self.nodes = self.maps = 0
         self.passed = 0.0

@@ -22,7 +22,7 @@ class Evidence:
             experience.stretch,
         )
         self.lengths = (None, *experience.lengths) if experience.lengths else ()
-        self._compass = experience.compass
+        self._compass, self._tolerance = experience.compass, experience.tolerance
         # Of each visit: where the unbroken row of shifts began that ends there, where it is by
         # these, and how long the way was.
         self._track: list[tuple[int, int, int, int]] = []
@@ -53,8 +53,10 @@ class Evidence:
         where the later one stands so many slots clockwise of the earlier one; or None."""
         if self._compass:
             before, after = self._compass[one], self._compass[other]
-            if before is not None and after is not None and (before + turn - after) % self.slots:
-                return "compass"
+            if before is not None and after is not None:
+                off = (before + turn - after) % self.slots
+                if min(off, self.slots - off) > self._tolerance:
+                    return "compass"
         if self._track:
             begun, x, y, way = self._track[one]
             since, u, v, more = self._track[other]

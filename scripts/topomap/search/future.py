@@ -181,8 +181,8 @@ class Future:
             return None
         slots, turns = self.slots, self.turns
         run, runs = [0], 0
-        for turn in turns[2:]:
-            runs += turn != slots // 2
+        for step in range(2, len(turns)):
+            runs += not self.experience.goes_straight(step)
             run.append(runs)
         # A visit is on two runs: the one by which it was reached, and the one by which it was left.
         of = [{*run[max(0, visit - 1) : visit + 1]} for visit in range(len(self.arrival))]

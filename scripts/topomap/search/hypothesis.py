@@ -75,7 +75,8 @@ class Hypothesis:
             self.stars.append(tuple(first + slot for slot in sorted(view, reverse=True)))
             for slot in view:
                 star = frozenset((other - slot) % self.slots for other in view)
-                self.views[first + slot] = numbers.setdefault((star, landmarks), len(numbers))
+                seen_from = (star, landmarks, self._pairs_from(step, slot))
+                self.views[first + slot] = numbers.setdefault(seen_from, len(numbers))
         # Of each step: after which steps markers were put down that lie somewhere, and whether each
         # is seen now.
         self.lying: dict[int, list[tuple[int, bool]]] = {}
@@ -92,12 +93,7 @@ class Hypothesis:
         self.faces: tuple[Face, ...] = (self.stars[0],)
         self.paths: dict[int, int] = {}
         self.meets: dict[int, int] = {}
-        self._axis = {
-            gateway: gateway - slot + slot % (self.slots // 2)
-            for star in self.stars
-            for gateway in star
-            for slot in [gateway % self.slots]
-        }
+        self._axis = {gateway: self._axis_of(gateway) for star in self.stars for gateway in star}
         # Of each place, its axes, and which others each of them meets there.
         self._axes = [
             [
@@ -115,6 +111,22 @@ class Hypothesis:
         self.components = 1
         self._trail: list[Link | None] = []
         self._add_place(0)
+
+    def _pairs_from(self, step: int, slot: int) -> frozenset[frozenset[int]]:
+        """Which gateways are told to be on one path, as slots clockwise from this one."""
+        told = self.experience.straight
+        return frozenset(
+            frozenset((other - slot) % self.slots for other in pair)
+            for pair in (told[step] if told else ())
+        )
+
+    def _axis_of(self, gateway: int) -> int:
+        """A name for the axis on which a gateway lies at its place: the lower slot of it."""
+        place, slot = divmod(gateway, self.slots)
+        if not self.experience.straight:
+            return gateway - slot + slot % (self.slots // 2)
+        pairs = self.experience.straight[place]
+        return gateway - slot + next((pair[0] for pair in pairs if slot in pair), slot)
 
     @property
     def dstates(self) -> tuple[DState, ...]:
@@ -178,6 +190,8 @@ class Hypothesis:
     def out(self) -> int:
         """The gateway by which the next step leaves, which is a travel."""
         place, slot = divmod(self.at[-1], self.slots)
+        if self.experience.tolerance:
+            return place * self.slots + self.experience.way_out(self.steps + 1, (place, slot))[1]
         turn = self.experience.turns[self.steps]
         assert turn is not None
         return place * self.slots + (slot + turn) % self.slots
@@ -204,8 +218,17 @@ class Hypothesis:
 
     def fitting(self, gateways: Face) -> list[int]:
         """Those gateways whose view is what the next step sees."""
+        if self.experience.tolerance:
+            return [gateway for gateway in gateways if self._alike(gateway)]
         seen = self.views[(self.steps + 1) * self.slots]
         return [gateway for gateway in gateways if self.views[gateway] == seen]
+
+    def _alike(self, gateway: int) -> bool:
+        """Whether the next step sees what is seen from this gateway."""
+        step = self.steps + 1
+        if not self.experience.tolerance:
+            return self.views[gateway] == self.views[step * self.slots]
+        return self.experience.alike(*divmod(gateway, self.slots), step)
 
     def marked(self, gateway: int) -> bool:
         """Whether the place of this gateway agrees with what the next step sees of markers: it sees
@@ -327,10 +350,10 @@ class Hypothesis:
     def _mistaken(self, gateway: int) -> str | None:
         """The first rule by which what the next step sees refuses this gateway, or None."""
         step, (place, slot) = self.steps + 1, divmod(gateway, self.slots)
-        if self.views[gateway] == self.views[step * self.slots]:
+        if self._alike(gateway):
             return self.denied(gateway) if self.marked(gateway) else "marker"
-        star = {(other - slot) % self.slots for other in self.experience.views[place]}
-        return "landmark" if star == self.experience.views[step] else "view"
+        alike = self.experience.looks_alike(place, slot, step)
+        return "landmark" if alike else "view"
 
     def _joins(self, path: int, other: int) -> bool:
         """Whether a link may make these paths one: by the path axiom they are two and share no

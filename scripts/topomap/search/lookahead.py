@@ -46,7 +46,7 @@ class LookAhead(Hypothesis):
         self.pending = [0] * len(self.future.ends)
         self.in_time = experience.steps
         self.dead_ends = [  # gateways of a place with none straight across
-            sum(self._across(gateway) not in star for gateway in star) for star in self.stars
+            2 * len({self._axis[gateway] for gateway in star}) - len(star) for star in self.stars
         ]
         self.path_ends = self.dead_ends[0]
         self._before: list[_Before] = []
@@ -56,10 +56,6 @@ class LookAhead(Hypothesis):
             for gateway in self.stars[0]:
                 self.linked_by[gateway] = self.future.last_at(gateway, self.possible_at[0])
             self._enter_faces()
-
-    def _across(self, gateway: int) -> int:
-        place, slot = divmod(gateway, self.slots)
-        return place * self.slots + (slot + self.slots // 2) % self.slots
 
     def children(self) -> list[int]:
         """Where the next step can arrive, as far as what is to come allows it."""

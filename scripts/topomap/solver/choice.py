@@ -69,8 +69,8 @@ class Trial:
         watch.by, watch.least = CLINGO, None
         if query.encoding != "work" or query.noise is not None or experience.assumed:
             return
-        if experience.parted or "no_path_axiom" in query.parts:  # nothing is foretold of these
-            return
+        if experience.parted or experience.tolerance or "no_path_axiom" in query.parts:
+            return  # nothing is foretold of these
         watch.by = SEARCH
         descent = Descent(experience, query, kind, self._heed)
         self._pairs = descent.pairs

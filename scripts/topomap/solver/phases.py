@@ -52,8 +52,10 @@ Heed = Callable[[clingo.Control], None]
 
 def serve(experience: Experience, query: "Query") -> bool:
     """Whether there are phases for such a query. There are none where views may be wrong: all that
-    the phases find rests on what is seen."""
-    if experience.parted or "no_path_axiom" in query.parts:
+    the phases find rests on what is seen; and on opposite gateways being on one path."""
+    if experience.parted or experience.tolerance or experience.straight:
+        return False
+    if "no_path_axiom" in query.parts:
         return False
     return query.noise is None and (_bounded(experience, query) or _square(experience, query))
 

@@ -10,6 +10,7 @@ import clingo
 from topomap.model.experience import Experience
 from topomap.model.found import Cube
 from topomap.model.query import Query
+from topomap.model.vocabulary import BEYOND
 from topomap.runtime.errors import InputError
 from topomap.runtime.folders import ENCODINGS
 from topomap.runtime.status import INTERRUPT
@@ -38,7 +39,11 @@ def control(
     if query.horizon is not None:
         arguments += ["-c", f"horizon={query.horizon}"]
     made = clingo.Control(arguments)
-    for path in (FORMS[query.encoding] / f"{file}.lp" for file in files):
+    for file in files:
+        folder = FORMS[query.encoding]
+        if query.encoding == "paper" and file in BEYOND:
+            folder /= "beyond"
+        path = folder / f"{file}.lp"
         if not path.is_file():
             raise InputError(f"{path}: not found; topomap is not installed as a whole")
         made.load(str(path))
@@ -55,6 +60,8 @@ def beyond(experience: Experience) -> list[str]:
         "odometry": experience.shifts,
         "lengths": experience.lengths,
         "closures": experience.same or experience.apart,
+        "straight": experience.straight,
+        "tolerance": experience.tolerance,
     }
     return [f"beyond/{name}" for name, told in needed.items() if told]
 
