@@ -153,11 +153,13 @@ def plain(experience):
 
 def known(experience):
     """What is known besides views, read from the facts that the encodings get."""
-    numbers = r"(compass|shift|length|same|apart)\((-?\d+),(-?\d+)(?:,(-?\d+))?\)"
+    numbers = r"(compass|shift|length|same|apart|straight)\((-?\d+),(-?\d+)(?:,(-?\d+))?\)"
     facts = re.findall(numbers, experience.facts())
     told = [(name, *(int(number) for number in rest if number)) for name, *rest in facts]
     if told:
         told += [("drift", experience.drift), ("stretch", experience.stretch)]
+    if experience.tolerance:
+        told.append(("tolerance", experience.tolerance))
     return told
 
 

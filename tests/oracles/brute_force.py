@@ -11,8 +11,9 @@ with the marker and when, as ``(t, "put")``, ``(t, "took")``, ``(t, "saw")``, or
 another one, ``(t, "put", name)``; ``turns[t]`` is "start" or "look" of a step that is no travel;
 ``known`` is a list of
 what is known besides views: ``("compass", t, slot)``, ``("shift", t, x, y)``, ``("length", t, d)``,
-``("same", t, u)``, ``("apart", t, u)``, ``("drift", percent)``, ``("stretch", percent)``. A
-hypothesis is the tuple of its ``(place, gateway)`` after each step, as ``at/3`` gives them.
+``("same", t, u)``, ``("apart", t, u)``, ``("drift", percent)``, ``("stretch", percent)``,
+``("straight", t, s, r)`` (with s = r: no other gateway is on that path), ``("tolerance", slots)``.
+A hypothesis is the tuple of its ``(place, gateway)`` after each step, as ``at/3`` gives them.
 """
 
 from itertools import combinations
@@ -24,8 +25,12 @@ class Hypothesis:
     """A map, and the dstates through which the agent went."""
 
     def __init__(self, experience, at):
-        self.slots, views, self.turns, *_ = experience
-        self.at = at
+        self.slots, views, self.turns, *_, known = experience
+        self.at, self.views = at, views
+        told = [one[1:] for one in known if one[0] == "straight"]
+        self.told = bool(told)
+        self.pairs = {(t, a): b for t, s, r in told if s != r for a, b in ((s, r), (r, s))}
+        self.inexact = any(one[0] == "tolerance" and one[1] for one in known)
         self.stars = {p: frozenset(views[p]) for p, _ in at}
         self.link = {}
         for t in range(1, len(at)):
@@ -35,8 +40,7 @@ class Hypothesis:
             self.link[here], self.link[there] = there, here
 
     def leaves(self, t):
-        place, gateway = self.at[t - 1]
-        return place, (gateway + self.turns[t]) % self.slots
+        return counterpart(self.slots, self.views, self.at, t - 1, self.turns[t], self.inexact)
 
     def gateways(self):
         return [(p, s) for p in sorted(self.stars) for s in sorted(self.stars[p])]
@@ -45,7 +49,18 @@ class Hypothesis:
         return [g for g in self.gateways() if g not in self.link]
 
     def opposite(self, gateway):
-        return gateway[0], (gateway[1] + self.slots // 2) % self.slots
+        place, slot = gateway
+        if isinstance(slot, str):  # what is behind a gateway that ends its path
+            return place, int(slot)
+        if self.told:
+            return place, self.pairs.get(gateway, str(slot))
+        return place, (slot + self.slots // 2) % self.slots
+
+    def direction(self, heading):
+        _, slot = heading
+        if isinstance(slot, str):
+            return (int(slot) + self.slots // 2) % self.slots
+        return slot
 
     def ray(self, gateway):
         """Gateways of arrival when walking out of ``gateway`` straight on."""
@@ -71,6 +86,7 @@ class Hypothesis:
             back = self.ray(gateway)
             forth = [self.opposite(a) for a in self.ray(self.opposite(gateway))]
             path = [*reversed(back), self.opposite(gateway), *forth]
+            # A path that is circular begins with the dstate that it ends with.
             axes = {frozenset((h, self.opposite(h))): h for h in path}
             done |= axes.keys()
             paths.append([*axes.values()])
@@ -151,13 +167,18 @@ class Hypothesis:
 
     def sides(self):
         """Of each path its places, and those right and left of it."""
-        half = self.slots // 2
         for path in self.paths():
             on, left, right = {p for p, _ in path}, set(), set()
-            for place, heading in path:
-                for turn in range(1, half):
-                    right |= {p for p, _ in self.ray((place, (heading + turn) % self.slots))}
-                    left |= {p for p, _ in self.ray((place, (heading - turn) % self.slots))}
+            for heading in path:
+                place, ahead = heading[0], self.direction(heading)
+                behind = self.direction(self.opposite(heading))
+                side = right
+                for turn in range(1, self.slots):
+                    slot = (ahead + turn) % self.slots
+                    if slot == behind:
+                        side = left
+                    else:
+                        side |= {p for p, _ in self.ray((place, slot))}
             yield on, right, left
 
     def boundary(self):
@@ -179,15 +200,26 @@ class Hypothesis:
         the places: what circumscription compares (docs/circumscription.md)."""
         paths = set()
         for path in self.paths():
-            ends = {(p, s % (self.slots // 2)) for p, s in path}
+            ends = {*path} | {self.opposite(h) for h in path}
             steps = [
                 t
                 for t in range(1, len(self.at))
-                if self.turns[t] not in RESTS
-                and (self.leaves(t)[0], self.leaves(t)[1] % (self.slots // 2)) in ends
+                if self.turns[t] not in RESTS and self.leaves(t) in ends
             ]
-            paths.add(("first", steps[0]) if steps else ("axis", *min(ends)))
+            axis = min((p, s) for p, s in ends if not isinstance(s, str))
+            paths.add(("first", steps[0]) if steps else ("axis", *axis))
         return frozenset(paths), frozenset(self.stars)
+
+
+def counterpart(slots, views, at, t, slot, inexact):
+    """The gateway of the place of visit t that is seen there in this slot."""
+    place, gateway = at[t]
+    if not inexact:
+        return place, (gateway + slot) % slots
+    # The gateways of both are numbered clockwise, from the one stood at.
+    here = sorted(views[t], key=lambda other: other % slots)
+    there = sorted(views[place], key=lambda other: (other - gateway) % slots)
+    return place, there[here.index(slot)]
 
 
 def marked(marker, at):
@@ -211,7 +243,7 @@ def marked(marker, at):
 def contradicts(experience, at):
     """Whether dstates contradict what is known besides views: each statement is held against each
     pair of steps, by its definition."""
-    slots, _, turns, _, _, known = experience
+    slots, views, turns, _, _, known = experience
     told = {}
     for name, *rest in known:
         told.setdefault(name, []).append(rest)
@@ -220,12 +252,13 @@ def contradicts(experience, at):
     shift = {t: (x, y) for t, x, y in told.get("shift", [])}
     length = dict(told.get("length", []))
     (drift,), (stretch,) = told.get("drift", [[10]])[0], told.get("stretch", [[10]])[0]
+    ((tolerance,),) = told.get("tolerance", [[0]])
     for t, u in combinations(range(last + 1), 2):
         if at[t][0] != at[u][0]:
             continue
         # The compass slot of the place's gateway 0 is one, whichever visit tells it.
-        zeros = {(compass[v] - at[v][1]) % slots for v in (t, u) if v in compass}
-        if len(zeros) > 1:
+        zeros = [(compass[v] - at[v][1]) % slots for v in (t, u) if v in compass]
+        if len(zeros) > 1 and apart(slots, *zeros) > tolerance:
             return True
         between = [*range(t + 1, u + 1)] if shift else []
         if any(turns[step] == "start" for step in between):
@@ -242,8 +275,7 @@ def contradicts(experience, at):
         return True
 
     def link(t):
-        place, gateway = at[t - 1]
-        return {(place, (gateway + turns[t]) % slots), at[t]}
+        return {counterpart(slots, views, at, t - 1, turns[t], tolerance), at[t]}
 
     return any(
         turns[t] not in RESTS
@@ -256,6 +288,37 @@ def contradicts(experience, at):
     )
 
 
+def apart(slots, one, other):
+    """How many slots lie between two, round the circle."""
+    return min((one - other) % slots, (other - one) % slots)
+
+
+def on_one_path(experience, t):
+    """The pairs of slots of visit t whose gateways are on one path."""
+    slots, views, *_, known = experience
+    told = [one[1:] for one in known if one[0] == "straight"]
+    if told:
+        return {frozenset((s, r)) for step, s, r in told if step == t and s != r}
+    return {frozenset((s, r)) for s, r in combinations(views[t], 2) if 2 * abs(s - r) == slots}
+
+
+def looks_alike(experience, t, place, gateway):
+    """Whether visit t sees what is seen from this gateway of a place, but for landmarks."""
+    slots, views, *_, known = experience
+    (tolerance,) = [one[1] for one in known if one[0] == "tolerance"] or [0]
+    here = sorted(views[t])
+    there = sorted(views[place], key=lambda other: (other - gateway) % slots)
+    if len(here) != len(there):
+        return False
+    if any(
+        apart(slots, s - here[0], r - gateway) > tolerance for s, r in zip(here, there, strict=True)
+    ):
+        return False
+    same = dict(zip(here, there, strict=True))
+    pairs = {frozenset(same[s] for s in pair) for pair in on_one_path(experience, t)}
+    return pairs == on_one_path(experience, place)
+
+
 def tree(experience, planar=False, bound=None, axiom=True):
     """All hypotheses by step: a list of lists, one for each step from 0 (Figure 2); with or without
     the path axiom."""
@@ -265,11 +328,9 @@ def tree(experience, planar=False, bound=None, axiom=True):
         level = []
         for at in levels[-1]:
             before = Hypothesis(experience, at)
-            place, gateway = at[-1]
 
             def fits(p, s, t=t):
-                turned = {(g - s) % slots for g in views[p]}
-                return turned == set(views[t]) and landmarks[p] == landmarks[t]
+                return looks_alike(experience, t, p, s) and landmarks[p] == landmarks[t]
 
             if turns[t] in RESTS:
                 arrivals = [at[-1]] if turns[t] == "look" else [*before.gateways(), (t, 0)]
@@ -283,7 +344,7 @@ def tree(experience, planar=False, bound=None, axiom=True):
                     if bound is None or len(after.stars) <= bound:
                         level.append(child)
                 continue
-            x = place, (gateway + turns[t]) % slots
+            x = counterpart(slots, views, before.at, t - 1, turns[t], before.inexact)
             if x in before.link:
                 child = *at, before.link[x]
                 fitting = fits(*before.link[x]) and marked(marker, child)

@@ -112,6 +112,40 @@ def informed(draw: random.Random, steps: int) -> Experience:
     )
 
 
+def bent(draw: random.Random, steps: int) -> Experience:
+    """A walk through a world where the gateways of one path need not be opposite ones, where
+    bearings are now and then a slot or two off, or both; sometimes with a compass."""
+    made = random_world(draw)
+    start = draw.choice(sorted(made.links))
+    route, dstates = wandering(draw, made, start, steps)
+    pairs = {}
+    for place in sorted(made.stars):
+        star = sorted(made.stars[place])
+        draw.shuffle(star)
+        half = len(star) // 2
+        both = [*zip(star[:half], star[half : 2 * half], strict=True)]
+        pairs[place] = draw.sample(both, draw.randint(0, half))
+    error = draw.choice([0, 1, 1, 2])
+    views, turns, told, compass = [], [], [], []
+    for step, (place, slot) in enumerate(dstates):
+        true = sorted((other - slot) % made.slots for other in made.stars[place])
+        seen = [0, *(one + draw.randint(-error, error) for one in true[1:])]
+        if sorted({*seen}) != seen or seen[-1] >= made.slots:
+            seen = true
+        named = dict(zip(true, seen, strict=True))
+        views.append(seen)
+        told.append([[named[(one - slot) % made.slots] for one in pair] for pair in pairs[place]])
+        if step < len(route):
+            turns.append(named[(route[step] - slot) % made.slots])
+        compass.append((slot + draw.randint(-error, error)) % made.slots)
+    return Experience(
+        *(made.slots, views, turns, [made.landmarks.get(place, ()) for place, _ in dstates]),
+        straight=told if draw.random() < 0.6 else (),
+        compass=compass if draw.random() < 0.3 else (),
+        tolerance=draw.choice([0, 1, 1, 2, 5]) if error else draw.choice([0, 0, 0, 1]),
+    )
+
+
 def logs(draw: random.Random, steps: int) -> Experience:
     """Several logs of one world, with second looks, markers with names, and now and then a compass,
     odometry and lengths."""

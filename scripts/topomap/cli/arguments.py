@@ -185,7 +185,7 @@ def add_known(command: Parser) -> None:
         "--tolerance",
         type=number(int, 0),
         metavar="N",
-        help="bearings may be wrong by N slots: a place keeps those of its first visit (default: 0)",
+        help="bearings may be wrong by N slots; a place keeps those first seen (default: 0)",
     )
 
 

@@ -201,7 +201,12 @@ class Experience:
         values = (
             *(integer("slots", slots), seen, done, signs, *marks),
             *(north, moved, measured, *pairs, *percents, _assumed(assumed)),
-            *(*rests, frozenset(every), _straight(straight, many), whole("tolerance", tolerance, 0)),
+            *(
+                *rests,
+                frozenset(every),
+                _straight(straight, many),
+                whole("tolerance", tolerance, 0),
+            ),
         )
         for one, value in zip(fields(self), values, strict=True):
             object.__setattr__(self, one.name, value)
@@ -464,8 +469,7 @@ class Experience:
         }
 
     def goes_straight(self, step: int) -> bool:
-        """Whether a travel leaves by the gateway that is on one path with the gateway of the arrival
-        before it."""
+        """Whether a travel leaves by the gateway that is on one path with that of arrival."""
         turn = self.turns[step - 1]
         if not self.straight:
             return turn == self.slots // 2
@@ -478,8 +482,8 @@ class Experience:
         return place, self.slot_at(place, slot, step - 1, turn)
 
     def slot_at(self, place: int, slot: int, visit: int, seen: int) -> int:
-        """The slot of the gateway of a place that a visit sees in the slot ``seen``, if it stands at
-        the place's gateway ``slot``. Where bearings are not exact, the gateways of both are
+        """The slot of the gateway of a place that a visit sees in the slot ``seen``, if it stands
+        at the place's gateway ``slot``. Where bearings are not exact, the gateways of both are
         numbered clockwise."""
         if not self.tolerance:
             return (slot + seen) % self.slots
@@ -594,9 +598,7 @@ def _assumed(given: Iterable[tuple[str, bool]]) -> frozenset[tuple[str, bool]]:
     return frozenset(told)
 
 
-def _straight(
-    given: Iterable[Iterable[Slots]], many: int
-) -> tuple[frozenset[Slots], ...]:
+def _straight(given: Iterable[Iterable[Slots]], many: int) -> tuple[frozenset[Slots], ...]:
     """Of each visit the pairs of slots that are on one path, the lower one first."""
     told = []
     for step, of in enumerate(collection("straight", given)):

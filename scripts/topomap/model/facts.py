@@ -67,8 +67,8 @@ def read(
 ) -> Experience:
     """The experience in an instance file; a ``noisy`` one may turn to gateways that were not
     seen, and views may lack slot 0; shifts and lengths may be wrong by ``drift`` and ``stretch``
-    percent, and bearings by ``tolerance`` slots. Raises InputError, one line, on bad input: the first of the faults that
-    ``Facts.faults`` finds."""
+    percent, and bearings by ``tolerance`` slots. Raises InputError, one line, on bad input: the
+    first of the faults that ``Facts.faults`` finds."""
     return parse(files.read_text(path), str(path), noisy, drift, stretch, tolerance)
 
 
@@ -116,10 +116,10 @@ class Facts:
 
     ``views[t]``, ``turns[t]`` and ``landmarks[t]`` hold what is told of step t, ``marks`` the
     steps of each name of MARKER, ``steps`` each step of which anything is told. ``known[name][t]``
-    holds the numbers that are told by compass/2, shift/3, length/2 or straight/3, and ``pairs[name]`` the
-    pairs of same/2 or apart/2, as they are told; ``rests[name]`` the steps of start/1 or look/1,
-    and ``things`` what is done with markers that have names. ``unread`` is the number of statements
-    that are no facts of an instance. ``drift`` and ``stretch`` are the
+    holds the numbers that are told by compass/2, shift/3, length/2 or straight/3, and
+    ``pairs[name]`` the pairs of same/2 or apart/2, as they are told; ``rests[name]`` the steps of
+    start/1 or look/1, and ``things`` what is done with markers that have names. ``unread`` is the
+    number of statements that are no facts of an instance. ``drift`` and ``stretch`` are the
     percents that shifts and lengths may be wrong by: what is told must be numbers of clingo when it
     is multiplied by them.
     """
@@ -349,9 +349,7 @@ class Facts:
             compass=self._each("compass", steps),
             shifts=self._each("shift", steps[1:]),
             lengths=self._each("length", steps[1:]),
-            straight=[self.known["straight"].get(step, ()) for step in steps]
-            if self.known["straight"]
-            else (),
+            straight=self._pairs_of(steps),
             same=self.pairs["same"],
             apart=self.pairs["apart"],
             starts=rests["start"],
@@ -360,6 +358,11 @@ class Facts:
             drift=self.drift,
             stretch=self.stretch,
         )
+
+    def _pairs_of(self, steps: range) -> list[list[Any]]:
+        """The pairs of gateways that are told of each step; nothing if none is told."""
+        told = self.known["straight"]
+        return [[*told.get(step, ())] for step in steps] if told else []
 
     def _each(self, name: str, steps: range) -> list[Any]:
         """What is told of each step, or None: a number, or if there are several, all of them."""
