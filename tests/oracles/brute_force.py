@@ -182,7 +182,13 @@ class Hypothesis:
             yield on, right, left
 
     def boundary(self):
-        return not any(left & right or on & left or on & right for on, right, left in self.sides())
+        """Whether there is no exception. Where opposite gateways are on one path, and the path axiom
+        holds, then no place is on a path and beside it, either."""
+        consistent = not any(self.exceptions())
+        if not self.told and not self.breaks_path_axiom():
+            sides = self.sides()
+            assert consistent != any(a & b for three in sides for a, b in combinations(three, 2))
+        return consistent
 
     def exceptions(self):
         """How many pairs of paths share two places, paths hold a place twice, and places are on

@@ -26,7 +26,7 @@ def map_json(world: TopologicalMap, at: Sequence[Gateway]) -> dict[str, Any]:
             for place, star in world.stars.items()
         ],
         "links": world.edges(),
-        "paths": world.paths(),
+        "paths": world.headings(),
         "faces": world.faces(),
         "genus": world.genus(),
         "pending": world.pending(),
@@ -49,7 +49,7 @@ def map_line(experience: Experience, found: Found) -> str:
     """A hypothesis in one line: what it disbelieves, its size, and the dstate after each step.
     The experience is the corrected one."""
     if not found.misread:
-        return Texts(experience).line(found)
+        return Texts(experience, path_axiom=False).line(found)
     world = experience.map_of(found.at)
     size = (
         len(world.stars),
@@ -70,9 +70,9 @@ def _line(size: tuple[int, int, int, int, int], way: str) -> str:
 class Texts:
     """The maps of one experience as text; what is the same in many of them is made once."""
 
-    def __init__(self, experience: Experience):
+    def __init__(self, experience: Experience, path_axiom: bool = True):
         self._experience = experience
-        self._numbering = Numbering(experience)
+        self._numbering = Numbering(experience, circular=not path_axiom)
         self._names: dict[DState, str] = {}  # of a dstate, in a line
         slots = experience.slots
         self._gateways = [  # by number, as JSON
@@ -110,6 +110,7 @@ class Texts:
         """A hypothesis as JSON text: that of ``map_json``."""
         one = CompactMap(self._numbering, at)
         texts, slots = self._gateways, self._experience.slots
+        bearing = self._numbering.bearing
         link, faces = one.link, one.faces()
 
         def listed(gateways: Iterable[int]) -> str:
@@ -123,7 +124,7 @@ class Texts:
             f'{{"at": [{", ".join(steps)}], '
             f'"places": [{", ".join([self._places[place] for place in one.places])}], '
             f'"links": [{", ".join(links)}], '
-            f'"paths": [{", ".join(map(listed, one.paths()))}], '
+            f'"paths": [{", ".join([listed(map(bearing, path)) for path in one.paths()])}], '
             f'"faces": [{", ".join(map(listed, faces))}], '
             f'"genus": {one.genus(len(faces))}, '
             f'"pending": {listed(pending)}, '
@@ -146,7 +147,7 @@ class Report:
     ):
         self.out, self.as_json = out, as_json
         self.experience, self.truth = experience, truth
-        self._texts = Texts(experience)
+        self._texts = Texts(experience, "no_path_axiom" not in query.parts)
         self.count = self.real = 0
         self.noisy = query.noise is not None
         self.last = Found((), kind or query.kind)

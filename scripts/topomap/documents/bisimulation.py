@@ -17,7 +17,8 @@ Pair = tuple[DState, DState, Where]
 class Chart:
     """A map as plain data: the gateways and landmarks of each place, the gateway at the other
     end of each link, where the agent stands, and the place where the marker lies, if it is
-    out; with a compass, the compass slot to which slot 0 of each place points."""
+    out; with a compass, the compass slot to which slot 0 of each place points; and if it is told
+    which gateways are on one path, the other one of each that is not the end of its path."""
 
     slots: int
     gateways: Mapping[Place, Collection[int]]
@@ -26,6 +27,7 @@ class Chart:
     landmarks: Mapping[Place, Collection[str]] = field(default_factory=dict)
     marker: Place | None = None
     compass: Mapping[Place, int] = field(default_factory=dict)
+    across: Mapping[DState, DState] | None = None
 
 
 def faults(one: Chart, other: Chart, related: Collection[Pair], marker: bool) -> Iterator[str]:
@@ -68,12 +70,17 @@ def pending(one: Chart, other: Chart, related: Collection[Pair]) -> tuple[set[DS
 
 
 def _look(chart: Chart, dstate: DState, marker: Place | None) -> tuple[Any, ...]:
-    """What is seen at a dstate: gateways clockwise of it, landmarks, whether the marker, and where
-    it points by the compass."""
+    """What is seen at a dstate: gateways clockwise of it, landmarks, whether the marker, where it
+    points by the compass, and which gateways are on one path."""
     place, slot = dstate
     gateways = {(other - slot) % chart.slots for other in chart.gateways[place]}
     north = (slot + chart.compass[place]) % chart.slots if place in chart.compass else None
-    return gateways, set(chart.landmarks.get(place, ())), marker == place, north
+    pairs = {
+        ((one - slot) % chart.slots, (chart.across[place, one][1] - slot) % chart.slots)
+        for one in chart.gateways[place]
+        if chart.across and (place, one) in chart.across
+    }
+    return gateways, set(chart.landmarks.get(place, ())), marker == place, north, pairs
 
 
 def _ways(one: Chart, other: Chart, pair: Pair) -> Iterator[tuple[DState, DState]]:

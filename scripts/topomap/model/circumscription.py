@@ -5,6 +5,7 @@ from collections.abc import Callable, Hashable, Iterable, Sequence
 from typing import NamedTuple
 
 from topomap.model.experience import DState, Experience
+from topomap.model.topology import Gateway
 
 OFTEN = 64  # comparisons of one set with all others between two looks at the clock
 
@@ -24,16 +25,16 @@ class Extent(NamedTuple):
 def extent(experience: Experience, at: Sequence[DState]) -> Extent:
     """The paths and places of a hypothesis, given by its dstate after each step."""
     world = experience.map_of(tuple(at))
-    axes = experience.slots // 2
-    first: dict[tuple[int, int], int] = {}
-    for step, (place, slot) in reversed([*enumerate(at)][1:]):
+    first: dict[Gateway, int] = {}
+    for step, arrival in reversed([*enumerate(at)][1:]):
         # Step T arrived at its gateway through the path that leads through it.
-        first[place, slot % axes] = step
+        first[arrival] = first[world.opposite(arrival)] = step
     paths: set[Hashable] = set()
     for path in world.paths():
-        on = [(place, slot % axes) for place, slot in path]
-        steps = [first[axis] for axis in on if axis in first]
-        paths.add(("first", min(steps)) if steps else ("axis", *on[0]))
+        steps = [first[heading] for heading in path if heading in first]
+        on = {end for heading in path for end in (heading, world.opposite(heading))}
+        axis = min((place, slot) for place, slot in on if slot in world.stars[place])
+        paths.add(("first", min(steps)) if steps else ("axis", *axis))
     return Extent(frozenset(paths), frozenset(world.stars))
 
 

@@ -2,7 +2,8 @@
 of an experience is worked out once.
 
 A gateway, or bare direction, is the number ``place * slots + slot``; a place is the step of its
-first visit. ``TopologicalMap`` is the definition; tests find the two equal.
+first visit. Where it is told which gateways are on one path, the direction behind a gateway G that
+ends its path is -1 - G. ``TopologicalMap`` is the definition; tests find the two equal.
 """
 
 from collections.abc import Sequence
@@ -16,24 +17,41 @@ class Numbering:
     """What all maps of one experience have in common. Each step of these arrives at a gateway that
     is seen there."""
 
-    def __init__(self, experience: Experience):
+    def __init__(self, experience: Experience, circular: bool = False):
+        self.circular = circular  # whether a path may be
         self.slots = slots = experience.slots
-        self.turns = experience.turns
+        self.experience, self.turns = experience, experience.turns
         self.parted = experience.parted
         views = [sorted(view) for view in experience.views]
         # Of each place: its gateways, and how many axes they lie on.
         self.gateways = [
             [place * slots + slot for slot in view] for place, view in enumerate(views)
         ]
-        self.axes = [len({slot % (slots // 2) for slot in view}) for view in views]
+        self.axes = [
+            len(view) - sum(1 for _ in experience.pairs(visit)) for visit, view in enumerate(views)
+        ]
         # The gateway before each one, counter-clockwise at its place; and straight across it.
         self.before: dict[Number, Number] = {}
         self.opposite: dict[Number, Number] = {}
         for place, star in enumerate(self.gateways):
             self.before.update(zip(star, star[-1:] + star, strict=False))
+            if experience.straight:
+                self.opposite |= {gateway: -1 - gateway for gateway in star}
+                self.opposite |= {-1 - gateway: gateway for gateway in star}
+                for pair in experience.straight[place]:
+                    one, other = (place * slots + slot for slot in pair)
+                    self.opposite |= {one: other, other: one}
+                continue
             for slot in range(slots):
                 across = place * slots + (slot + slots // 2) % slots
                 self.opposite[place * slots + slot] = across
+
+    def bearing(self, heading: Number) -> Number:
+        """The number of the slot of a heading."""
+        if heading >= 0:
+            return heading
+        place, slot = divmod(-1 - heading, self.slots)
+        return place * self.slots + (slot + self.slots // 2) % self.slots
 
 
 class CompactMap:
@@ -48,12 +66,15 @@ class CompactMap:
         place, slot = at[0]
         self.places = [0]
         self.link: dict[Number, Number] = {}
-        link = self.link
+        link, tolerance = self.link, numbering.experience.tolerance
         for step, turn in enumerate(numbering.turns[: len(at) - 1], 1):
             before = place * slots + slot
             place, slot = at[step]
             if turn is not None:
                 out = before - before % slots + (before % slots + turn) % slots
+                if tolerance:
+                    known = numbering.experience.way_out(step, divmod(before, slots))
+                    out = known[0] * slots + known[1]
                 arrival = place * slots + slot
                 link[out] = arrival
                 link[arrival] = out
@@ -66,10 +87,18 @@ class CompactMap:
         return [gateway for place in self.places for gateway in every[place]]
 
     def number_of_paths(self) -> int:
-        """How many paths there are. As no path is circular, each link makes two paths one, so there
-        are as many as there are axes, less the links."""
+        """How many paths there are. Unless it makes a path circular, each link makes two paths one,
+        so there are as many as there are axes, less the links, but for those that are circular."""
         axes = self._all.axes
-        return sum([axes[place] for place in self.places]) - len(self.link) // 2
+        many = sum([axes[place] for place in self.places]) - len(self.link) // 2
+        return many + self._circular() if self._all.circular else many
+
+    def _circular(self) -> int:
+        """How many paths are circular: those that have no end."""
+        link, opposite = self.link, self._all.opposite
+        return sum(
+            link.get(path[-1]) == opposite[path[0]] and path[-1] in link for path in self.paths()
+        )
 
     def number_of_pending(self) -> int:
         """How many gateways have no link."""
@@ -129,15 +158,15 @@ class CompactMap:
         for gateway in self.gateways():
             if gateway in done:
                 continue
-            # Back to where the path begins; no path is circular.
+            # Back to where the path begins; one that is circular begins here.
             path = [gateway]
             ahead = opposite[gateway]
-            while ahead in link:
+            while ahead in link and link[ahead] != gateway:
                 path.append(link[ahead])
                 ahead = opposite[link[ahead]]
-            path.reverse()
+            path = [gateway] if ahead in link else path[::-1]
             ahead = gateway
-            while ahead in link:
+            while ahead in link and opposite[link[ahead]] != path[0]:
                 ahead = opposite[link[ahead]]
                 path.append(ahead)
             for heading in path:

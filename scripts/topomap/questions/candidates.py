@@ -82,7 +82,10 @@ def gather(
     watch: Watch,
 ) -> Candidates:
     """The maps of an experience, the beginning of a whole one, that are named by their kind (one
-    of PARTS_OF) or by a file, or are given. Raises InputError where one is no map of it."""
+    of PARTS_OF) or by a file, or are given. Raises InputError where one is no map of it, or
+    where bearings are not exact: then it is not told what two maps predict differently."""
+    if experience.tolerance:
+        raise InputError("topomap explore: what maps predict is exact: no tolerance")
     found: dict[At, str] = {}
     fault = None
     for number, one in enumerate(among, 1):

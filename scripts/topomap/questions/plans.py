@@ -89,8 +89,16 @@ class Planned:
 def _seen(one: Prediction | None) -> dict[str, Any] | None:
     if one is None:
         return None
-    told = {"view": sorted(one.view), "landmarks": sorted(one.landmarks), "marker": one.marker}
+    told: dict[str, Any] = {"view": sorted(one.view), "landmarks": sorted(one.landmarks)}
+    told["marker"] = one.marker
+    if one.straight is not None:
+        told["straight"] = _pairs(one)
     return told if one.compass is None else {**told, "compass": one.compass}
+
+
+def _pairs(one: Prediction) -> list[tuple[int, int]]:
+    """Which gateways are on one path, the lower slot first."""
+    return sorted(pair for pair in one.straight or () if pair[0] < pair[1])
 
 
 def _walk(experience: Experience, made: Plan) -> Iterator[str]:
@@ -125,14 +133,16 @@ def _turn(experience: Experience, step: int, turn: int) -> str:
 
 
 def _cell(one: Prediction | None) -> str:
-    """What is seen: gateways clockwise of the one arrived at, landmarks, the marker, and where that
-    gateway points by the compass."""
+    """What is seen: gateways clockwise of the one arrived at, landmarks, the marker, where that
+    gateway points by the compass, and which gateways are on one path."""
     if one is None:
         return "-"
     seen = " ".join(map(str, sorted(one.view)))
     signs = [words.signs(one.landmarks)] if one.landmarks else []
     north = [] if one.compass is None else [f"compass {one.compass}"]
-    return ", ".join([words.short(seen, LONGEST), *signs, *["marker"] * one.marker, *north])
+    pairs = " ".join(f"{one}-{other}" for one, other in _pairs(one))
+    paths = [f"paths {pairs}"] if pairs else []
+    return ", ".join([words.short(seen, LONGEST), *signs, *["marker"] * one.marker, *north, *paths])
 
 
 def _verdict(kind: str, many: int, made: Plan, every: bool) -> str:

@@ -83,7 +83,7 @@ def check_proofs(path: str, experience: Experience) -> Checked:
         # A compass counts if each visit has it.
         slots = [slot for slot in experience.compass if slot is not None]
         north = {place: slots[place] for place, _ in at} if len(slots) == len(at) else {}
-        rest = landmarks, lies, north
+        rest = landmarks, lies, north, experience.across(grown.stars)
         charts.append(Chart(experience.slots, grown.stars, grown.links, at[-1], *rest))
     wrong = []
     for number, proof in enumerate(proofs, 1):

@@ -21,7 +21,7 @@ class Standing:
     def chart(self) -> Chart:
         """The same as plain data, for the checker."""
         world = self.world
-        rest = world.landmarks, self.marker, self.compass
+        rest = world.landmarks, self.marker, self.compass, world.across
         return Chart(world.slots, world.stars, world.links, self.dstate, *rest)
 
 
@@ -56,17 +56,20 @@ def orientation(experience: Experience, at: Sequence[DState]) -> dict[Place, int
 @dataclass(frozen=True)
 class Prediction:
     """What a map says will be seen: gateways clockwise of the one arrived at, landmarks, and
-    whether the marker; and the compass slot of the one arrived at, if there is a compass."""
+    whether the marker; the compass slot of the one arrived at, if there is a compass; and which
+    gateways are on one path, if that is told (each pair in both orders)."""
 
     view: frozenset[int]
     landmarks: frozenset[str] = frozenset()
     marker: bool = False
     compass: int | None = None
+    straight: frozenset[tuple[int, int]] | None = None
 
     @property
-    def signs(self) -> tuple[tuple[str, ...], bool, int | None]:
+    def signs(self) -> tuple[Hashable, ...]:
         """What there is but gateways."""
-        return tuple(sorted(self.landmarks)), self.marker, self.compass
+        pairs = tuple(sorted(self.straight or ()))
+        return tuple(sorted(self.landmarks)), self.marker, self.compass, pairs
 
 
 def sight(standing: Standing, dstate: Gateway, marker: Place | None) -> Prediction:
@@ -76,7 +79,7 @@ def sight(standing: Standing, dstate: Gateway, marker: Place | None) -> Predicti
     north = standing.compass.get(place)
     points = None if north is None else (slot + north) % world.slots
     here = marker is not None and marker == place
-    return Prediction(world.view(dstate), landmarks, here, points)
+    return Prediction(world.view(dstate), landmarks, here, points, world.pairs(dstate))
 
 
 def predict(
@@ -150,6 +153,10 @@ def facts(maps: Iterable[tuple[int, Standing]]) -> str:
         lines += [
             f"map_compass({number},{index[place]},{slot})."
             for place, slot in standing.compass.items()
+        ]
+        lines += [
+            f"map_pair({number},{index[a[0]]},{a[1]},{b[1]})."
+            for a, b in (world.across or {}).items()
         ]
         if standing.marker is not None:
             lines.append(f"map_marker({number},{index[standing.marker]}).")
