@@ -182,8 +182,8 @@ class Hypothesis:
             yield on, right, left
 
     def boundary(self):
-        """Whether there is no exception. Where opposite gateways are on one path, and the path axiom
-        holds, then no place is on a path and beside it, either."""
+        """Whether there is no exception. Where opposite gateways are on one path, and the path
+        axiom holds, then no place is on a path and beside it, either."""
         consistent = not any(self.exceptions())
         if not self.told and not self.breaks_path_axiom():
             sides = self.sides()
