@@ -15,9 +15,11 @@ from topomap.runtime.folders import ENCODINGS
 
 At = Sequence[tuple[int, int, int]]  # at(T,P,S)
 Violation = tuple[str, int]
-PATH_RULES = {"path_twice", "path_circular"}
+PATH_RULES = ("path_twice", "path_circular")
+NO_PATH_AXIOM = "no_path_axiom"  # a demand by which a map need not keep them
+LATE = ("closed", "travelled", "perpendicular")  # no step before the last one tells
 STEP_RULES = {
-    *("exactly_one", "naming", "gateway", "view", "landmark", "marker", "schema"),
+    *("exactly_one", "naming", "gateway", "view", "landmark", "marker", "schema", "itself"),
     *("compass", "odometry", "length", "same", "apart", "look"),
 }
 
@@ -25,7 +27,8 @@ STEP_RULES = {
 def by_rules(experience: Experience, at: At, demands: Sequence[str] = ()) -> set[Violation]:
     """What ``check.lp`` finds: rules, and the steps after which they are broken.
 
-    ``demands`` are terms: planar, bound(B), closed, travelled, boundary, perpendicular.
+    ``demands`` are terms: planar, bound(B), closed, travelled, boundary, perpendicular; and
+    no_path_axiom, by which less is demanded.
     """
     control = clingo.Control(experience.constants())
     control.load(str(ENCODINGS / "check.lp"))
@@ -77,16 +80,18 @@ def by_definition(experience: Experience, at: At, demands: Sequence[str] = ()) -
     for step, out, arrival in _ways(experience, stands):
         ends.setdefault(out, set()).add(arrival)
         ends.setdefault(arrival, set()).add(out)
-        if out == arrival or max(len(ends[out]), len(ends[arrival])) > 1:
+        if out == arrival:
+            found.add(("itself", step))
+        if max(len(ends[out]), len(ends[arrival])) > 1:
             found.add(("schema", step))
     whole = Grown(experience, stands, last)
-    for rule in ("path_twice", "path_circular", *demands):
+    wanted = [demand for demand in demands if demand != NO_PATH_AXIOM]
+    for rule in wanted if NO_PATH_AXIOM in demands else (*PATH_RULES, *wanted):
         name, _, number = rule.rstrip(")").partition("(")
         broken, limit = BROKEN[name], int(number or 0)
-        axiom = not PATH_RULES & {rule for rule, _ in found}
-        if not (axiom or name not in ("boundary", "perpendicular")) or not broken(whole, limit):
+        if not broken(whole, limit):
             continue
-        step = 0 if name not in ("closed", "travelled") else last
+        step = last if name in LATE else 0
         while not broken(Grown(experience, stands, step), limit):
             step += 1
         found.add((rule, step))
@@ -257,28 +262,30 @@ class Grown:
     def over(self, bound: int) -> bool:
         return len(self.stars) > bound
 
-    def one_sided(self, heading: Gateway) -> tuple[set[int], set[int], set[int]]:
-        """Of the path with this heading: its places, and those at its right and left."""
-        back = self.ahead.get(self.opposite(heading), [])
-        forth = self.ahead.get(heading, [])
-        headings = [heading, *back, *map(self.opposite, forth)]
-        beside: tuple[set[int], set[int]] = set(), set()
-        for place, slot in headings:
+    def beside(self, path: list[Gateway]) -> tuple[set[int], set[int]]:
+        """The places at the right and left of a path."""
+        sides: tuple[set[int], set[int]] = set(), set()
+        for place, slot in path:
             for other in self.stars[place]:
                 turn = (other - slot) % self.slots
                 if turn % self.half:
                     met = {place for place, _ in self.ahead.get((place, other), [])}
-                    beside[turn > self.half].update(met)
-        return {place for place, _ in headings}, *beside
+                    sides[turn > self.half].update(met)
+        return sides
 
-    def two_sided(self, _: int) -> bool:
-        """Whether a place is left and right of a path, or on it and beside it."""
-        for place, star in self.stars.items():
-            for slot in star:
-                on, right, left = self.one_sided((place, slot))
-                if right & left or on & (right | left):
-                    return True
-        return False
+    def exceptions(self) -> list[tuple[str, list[int]]]:
+        """The exceptions to consistent boundaries, each with its places: two paths that share some,
+        a path that holds some twice, and a place at the right and left of a path."""
+        paths = self.paths()
+        places = [[place for place, _ in path] for path in paths]
+        shared = [set(one) & set(other) for one, other in combinations(places, 2)]
+        again = [{place for place in one if one.count(place) > 1} for one in places]
+        both = [place for path in paths for place in set.intersection(*self.beside(path))]
+        return sorted(
+            [("meet twice", sorted(some)) for some in shared if len(some) > 1]
+            + [("place twice", sorted(some)) for some in again if some]
+            + [("both sides", [place]) for place in both]
+        )
 
     def slanted(self, _: int) -> bool:
         """Whether two paths share two places, or three meet pairwise at three."""
@@ -298,6 +305,6 @@ BROKEN: dict[str, Callable[[Grown, int], bool]] = {
     "bound": Grown.over,
     "closed": lambda grown, _: bool(grown.pending()),
     "travelled": Grown.untravelled,
-    "boundary": Grown.two_sided,
+    "boundary": lambda grown, _: bool(grown.exceptions()),
     "perpendicular": Grown.slanted,
 }
