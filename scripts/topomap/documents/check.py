@@ -163,6 +163,7 @@ class Grown:
         self.slots, self.half, self.step = experience.slots, experience.slots // 2, step
         places = sorted({place for t, (place, _) in stands.items() if t <= step})
         self.stars = {place: sorted(experience.views[place]) for place in places}
+        self.at = [stands[t] for t in range(step + 1) if t in stands]
         self.dstate = stands.get(step)
         self.links: dict[Gateway, Gateway] = {}
         for t, out, arrival in _ways(experience, stands):

@@ -1,10 +1,20 @@
 """What is wrong with maps, by two checkers, and whether they are what is said of them."""
 
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import asdict, dataclass, field
+import json
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass, field
 from typing import Any
 
-from topomap.documents.check import STEP_RULES, At, Grown, Violation, by_definition, by_rules
+from topomap.documents.check import (
+    NO_PATH_AXIOM,
+    PATH_RULES,
+    STEP_RULES,
+    At,
+    Grown,
+    Violation,
+    by_definition,
+    by_rules,
+)
 from topomap.documents.maps import (
     BEST_FIRST,
     LONGER,
@@ -14,24 +24,81 @@ from topomap.documents.maps import (
     misread_of,
 )
 from topomap.model import words
+from topomap.model.exceptions import NamedException, exceptions_of
 from topomap.model.experience import Experience, Misread
+from topomap.model.found import BEST
 from topomap.model.reply import Reply
 from topomap.model.topology import Gateway, TopologicalMap
+from topomap.model.vocabulary import PROPERTIES
 from topomap.runtime.errors import InputError
+
+PATH_AXIOM = "path axiom"
 
 
 @dataclass(frozen=True)
 class Verdict:
-    """What is wrong with a map: rules broken, with steps, and other faults in words."""
+    """What is wrong with a map: rules broken, with steps, and other faults in words. Of a map whose
+    steps break no rule it can be told which of the axioms and defaults it ``breaks``, with the
+    violations of each, its ``genus``, how many gateways are ``pending``, and its ``exceptions`` to
+    consistent boundaries; None: it is not told."""
 
     where: str
     violations: list[Violation]
     faults: list[str]
     short: bool = False  # the map is of part of the steps
+    breaks: dict[str, list[Violation]] | None = None
+    genus: int | None = None
+    pending: int | None = None
+    exceptions: list[NamedException] | None = None
 
     @property
     def sound(self) -> bool:
         return not self.violations and not self.faults
+
+    @property
+    def keeps(self) -> list[str] | None:
+        """The axioms and defaults that the map does not break; None: it is not told."""
+        every = (PATH_AXIOM, *PROPERTIES)
+        return None if self.breaks is None else [one for one in every if one not in self.breaks]
+
+    def document(self) -> dict[str, Any]:
+        """What is wrong, as JSON."""
+        keys = ("where", "violations", "faults", "short")
+        return {key: getattr(self, key) for key in keys}
+
+    def told(self) -> dict[str, Any]:
+        """What is told of the map besides, as JSON."""
+        told: dict[str, Any] = {"where": self.where}
+        if self.breaks is not None:
+            told |= {"breaks": self.breaks, "keeps": self.keeps}
+            told |= {"genus": self.genus, "pending": self.pending}
+        if self.exceptions is not None:
+            told["exceptions"] = [one.document() for one in self.exceptions]
+        return told
+
+    def lines(self) -> Iterator[str]:
+        """What is wrong, and what is told besides, to read."""
+        if not self.sound:
+            broken = [f"violation({rule},{step})" for rule, step in self.violations]
+            yield f"{self.where}: {'; '.join(broken + self.faults)}"
+        if self.breaks is not None:
+            details = {
+                PATH_AXIOM: ", ".join(
+                    f"{rule} after step {step}" for rule, step in self.breaks.get(PATH_AXIOM, ())
+                ),
+                "planar": f"genus {self.genus}",
+                "closed": f"{self.pending} pending",
+            }
+            broken = [
+                f"{name} ({details[name]})" if name in details else name for name in self.breaks
+            ]
+            keeps = ", ".join(self.keeps or ["none of them"])
+            yield f"{self.where}: breaks {', '.join(broken) or 'none of them'}; keeps {keeps}"
+        if self.exceptions:
+            many = words.number(len(self.exceptions), "exception")
+            yield f"{self.where}: {many} to consistent boundaries"
+            for one in self.exceptions:
+                yield f"  {one.words}"
 
 
 @dataclass(repr=False)
@@ -62,16 +129,16 @@ class Judged(Reply):
     def document(self) -> dict[str, Any]:
         return {
             "demands": self.demands,
-            "unsound": [asdict(verdict) for verdict in self.unsound],
+            "unsound": [verdict.document() for verdict in self.unsound],
+            "maps": [one.told() for one in self.verdicts if one.exceptions is not None],
             "checked": len(self.verdicts),
             "short": self.short,
             "count": self.count,
         }
 
     def lines(self) -> Iterator[str]:
-        for verdict in self.unsound:
-            broken = [f"violation({rule},{step})" for rule, step in verdict.violations]
-            yield f"{verdict.where}: {'; '.join(broken + verdict.faults)}"
+        for verdict in self.verdicts:
+            yield from verdict.lines()
         many = words.number(self.count, "map").replace(",", "")
         line = f"{len(self.verdicts)} of {many} checked" if self.fault else many
         line += f", {len(self.unsound) or 'none'}{' of these' * bool(self.fault)} unsound"
@@ -86,9 +153,12 @@ def verdicts(
     demands: Sequence[str],
     truth: TopologicalMap | None,
     noise: int | None = None,
+    every: bool = False,
 ) -> Iterator[Verdict]:
     """A verdict on each map, by ``check.lp`` and by definition, of what was seen but for what
     the map says was misread: after ``noise`` steps at most, and as many as its document allows.
+    With ``every`` it tells of each axiom and default whether the map breaks it; that it does is no
+    violation then, unless it is among the ``demands``, or the document says that it does not.
     Raises InputError if one is much longer than the experience."""
     for document in documents:
         for number, entry in enumerate(document.maps, 1):
@@ -96,7 +166,12 @@ def verdicts(
                 fault = f"at has {len(entry['at'])} dstates, the instance {seen.steps + 1}"
                 raise InputError(f"{document.where}: map {number}: {fault}")
     for document in documents:
-        wanted = sorted({*demands, *document.demands()})
+        wanted = {*demands, *document.demands()}
+        if every and "parts" not in document.claims:
+            wanted.add(NO_PATH_AXIOM)
+        asked = {*wanted, *PROPERTIES} - {NO_PATH_AXIOM} if every else wanted
+        kept = {*STEP_RULES, *wanted, *(() if NO_PATH_AXIOM in wanted else PATH_RULES)}
+        named = every or "boundary" in wanted or document.claims.get("kind") in BEST
         numbers: dict[tuple[At, frozenset[Misread]], int] = {}
         bounds = [k for k in (noise, document.claims.get("noise")) if k is not None]
         for number, entry in enumerate(document.maps, 1):
@@ -111,26 +186,54 @@ def verdicts(
             except (LookupError, TypeError, ValueError):
                 misread, found = frozenset(), ["misread: not what topomap solve --json writes"]
             if not found:
-                rules = by_rules(experience, at, wanted)
-                definition = by_definition(experience, at, wanted)
+                rules = by_rules(experience, at, sorted(asked))
+                definition = by_definition(experience, at, sorted(asked))
+            breaks = genus = pending = exceptions = None
             if not found and not STEP_RULES & {rule for rule, _ in rules | definition}:
                 found = list(faults(experience, document, entry, at))
                 if rules != definition:
                     found.append("check.lp and the check by definition do not agree on it")
+                whole = Grown(experience, {t: (p, s) for t, p, s in at}, len(at) - 1)
+                if named:
+                    exceptions = exceptions_of(experience, whole.at)
+                    if _places_of(exceptions) != whole.exceptions():
+                        found.append("the exceptions are not those by definition")
+                if every:
+                    breaks = _breaks(rules | definition)
+                    genus, pending = whole.genus(), len(whole.pending())
                 if truth and "real" in entry:
                     real = experience.map_of(tuple((p, s) for _, p, s in at)).isomorphic(truth)
                     if real != entry["real"]:
                         found.append(f"real: it is {'not ' * (not real)}the real map")
             if numbers.setdefault((at, misread), number) != number:
                 found.append(f"the same as map {numbers[at, misread]}")
-            violations = sorted(rules | definition, key=lambda violation: violation[::-1])
+            violations = _by_step(one for one in rules | definition if one[0] in kept)
             said = document.claims.get("count", len(document.maps))
             if number == 1 and said != len(document.maps):
                 found.append(f"count is {said}, there are {len(document.maps)} maps")
             if truth is None and "real" in entry:
                 found.append("real: only --truth can tell")
             short = len(at) <= seen.steps
-            yield Verdict(f"{document.where}: map {number}", violations, found, short)
+            where = f"{document.where}: map {number}"
+            yield Verdict(where, violations, found, short, breaks, genus, pending, exceptions)
+
+
+def _by_step(violations: Iterable[Violation]) -> list[Violation]:
+    return sorted(violations, key=lambda violation: violation[::-1])
+
+
+def _breaks(violations: set[Violation]) -> dict[str, list[Violation]]:
+    """The axioms and defaults that are broken, each with the violations that say so."""
+    rules = {PATH_AXIOM: PATH_RULES, **{part: (part,) for part in PROPERTIES}}
+    found = {
+        name: _by_step(one for one in violations if one[0] in some) for name, some in rules.items()
+    }
+    return {name: broken for name, broken in found.items() if broken}
+
+
+def _places_of(exceptions: Iterable[NamedException]) -> list[tuple[str, list[int]]]:
+    """Exceptions without the names of the paths, in the order of ``Grown.exceptions``."""
+    return sorted((one.kind, list(one.places)) for one in exceptions)
 
 
 def _mistaken(
@@ -187,10 +290,11 @@ def _noise(entry: dict[str, Any], claims: dict[str, Any]) -> list[int]:
 
 def _cost(grown: Grown, claims: dict[str, Any]) -> list[int]:
     """What was minimised, most important first."""
-    parts = claims.get("parts", ())
-    minimal = "minimal" in parts or claims.get("optimal") or claims.get("kind") == BEST_FIRST
+    parts, best = claims.get("parts", ()), claims.get("optimal")
     genus = [grown.genus()] if "genus" in parts else []
-    return genus + ([len(grown.paths()), len(grown.stars)] if minimal else [])
+    exceptions = [len(grown.exceptions())] if "exceptions" in parts or best else []
+    minimal = "minimal" in parts or best or claims.get("kind") == BEST_FIRST
+    return genus + exceptions + ([len(grown.paths()), len(grown.stars)] if minimal else [])
 
 
 def _places(grown: Grown, experience: Experience, said: Any) -> bool:
@@ -227,6 +331,14 @@ def _faces(grown: Grown, _: Experience, said: Any) -> bool:
     return sorted(from_least(_gateways(face)) for face in list_of(said)) == ours
 
 
+def _exceptions(grown: Grown, experience: Experience, said: Any) -> bool:
+    def plain(exceptions: Iterable[Any]) -> list[str]:
+        return sorted(json.dumps(one, sort_keys=True) for one in exceptions)
+
+    ours = (one.document() for one in exceptions_of(experience, grown.at))
+    return plain(list_of(said)) == plain(ours)
+
+
 def _gateways(said: Any) -> list[Gateway]:
     return [_gateway(gateway) for gateway in list_of(said)]
 
@@ -243,6 +355,7 @@ KEYS: dict[str, Callable[[Grown, Experience, Any], bool]] = {
     "links": _links,
     "paths": _paths,
     "faces": _faces,
+    "exceptions": _exceptions,
     "genus": lambda grown, _, said: is_number(said) and grown.genus() == said,
     "pending": lambda grown, _, said: sorted(_gateways(said)) == sorted(grown.pending()),
     "dstate": lambda grown, _, said: _gateway(said) == grown.dstate,
