@@ -159,11 +159,11 @@ def known(experience):
 
 
 class Truth:
-    """What the independent search says of an experience."""
+    """What the independent search says of an experience, with or without the path axiom."""
 
-    def __init__(self, experience):
+    def __init__(self, experience, axiom=True):
         self.experience = plain(experience)
-        self.levels = tree(self.experience)
+        self.levels = tree(self.experience, axiom=axiom)
         self.final = {at: Hypothesis(self.experience, at) for at in self.levels[-1]}
 
     def having(self, *parts, bound=None):

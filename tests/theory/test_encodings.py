@@ -88,7 +88,13 @@ AGGREGATES = {
     "explore/walk": ["1 >= { go(I,S): turns(S) }", "1 >= { drop(I): I = (0..(n-1)) }"],
     "bound": ["B < #count { P: new(P) }"],
     "input": ["M = #max { T: has_turn(T) }"],
-    "query": ["N = #count { S: has_axis(T,S) }", "N = #count { S: view(T,S) }"],
+    "query": [
+        "N = #count { S: has_axis(T,S) }",
+        "N = #count { S: view(T,S) }",
+        "I = #count { B: may_name(B), B < A }",
+        "N = #max { M: ask(number(exception,M)); M: ask(least(exception,M)); "
+        "M: ask(most(exception,M)) }",
+    ],
     "noise": [
         "noise >= { wrong(T): step(T) }",
         "{ misread(T,gateway(S)) }",

@@ -21,6 +21,10 @@ PROPERTIES = tuple(part for part in DEMANDS if part != "euler")  # which is anot
 FORMS = ("work", "paper")  # of the encoding: the one that does the work, and the statement
 STATED = {"planar", "closed", "travelled", "boundary", "perpendicular", "minimal"}  # its parts
 
+# What a statement can say of the whole map: that it has what a part demands, that some path is
+# circular, or that two paths share two places or more.
+QUALITIES = (*PROPERTIES, "circular", "meets_twice")
+
 # What each argument is: a step, or a slot counted clockwise of where the agent stood after
 # the step before it.
 RELATIONS = {
@@ -36,6 +40,7 @@ FIGURES = {  # as query.lp has them
     "links": "link",
     "pending": "pending",
     "genus": "genus",
+    "exceptions": "exception",
 }
 VOCABULARY = """\
 statements; T and U are steps; S and R are slots, counted clockwise from the gateway where the
@@ -46,8 +51,11 @@ agent stood after the step:
   path(T,S,U,R)     one path leads through these two gateways
   pending(T,S)      that gateway has no link
   at(T,P,S)         after T it is at gateway S of place P, as in the maps of solve
-  places < 12       the number of places, paths, links or pending gateways (pending),
-                    or the genus, is compared by one of < <= = != >= >
+  places < 12       the number of places, paths, links, pending gateways (pending) or
+                    exceptions to consistent boundaries (exceptions), or the genus, is
+                    compared by one of < <= = != >= >
   planar, closed, travelled, boundary, perpendicular
                     the map fulfils what the part of this name demands
+  circular          some path is circular, which takes --no-path-axiom
+  meets_twice       some two paths share two places or more
   not STATEMENT     the statement does not hold"""
