@@ -46,9 +46,9 @@ def check(
         noise: how many views a map may disbelieve.
         truth: the real map, for maps that say whether they are it (the key ``real``).
         timeout: seconds after which no further map is begun.
-        every: tell of each map which axioms and defaults it breaks (``breaks`` of its verdict) and
-            keeps (``keeps``), and its ``exceptions``. What is not demanded, nor said of the maps,
-            is then nothing wrong, the path axiom included.
+        every: tell of each map which axioms and defaults it breaks and keeps (``axioms`` of its
+            verdict), and its ``exceptions``. What is not demanded, nor said of the maps, is then
+            nothing wrong, the path axiom included.
         parts: what the maps are to have; genus, exceptions, minimal and euler are none that one map
             has. With no_path_axiom they need not keep the path axiom.
 

@@ -25,7 +25,7 @@ from topomap.documents.maps import (
 )
 from topomap.model import words
 from topomap.model.exceptions import NamedException, exceptions_of
-from topomap.model.experience import Experience, Misread
+from topomap.model.experience import DState, Experience, Misread
 from topomap.model.found import BEST
 from topomap.model.reply import Reply
 from topomap.model.topology import Gateway, TopologicalMap
@@ -33,33 +33,77 @@ from topomap.model.vocabulary import PROPERTIES
 from topomap.runtime.errors import InputError
 
 PATH_AXIOM = "path axiom"
+RULES_OF = {PATH_AXIOM: PATH_RULES, **{part: (part,) for part in PROPERTIES}}  # that tell of each
+
+
+@dataclass(frozen=True)
+class Axioms:
+    """Which of the axioms and defaults of the theory a map ``breaks``, each with the violations
+    that say so; its genus, and how many gateways are pending."""
+
+    breaks: dict[str, list[Violation]]
+    genus: int
+    pending: int
+
+    @property
+    def keeps(self) -> list[str]:
+        """Those that the map does not break."""
+        return [one for one in RULES_OF if one not in self.breaks]
+
+    @property
+    def words(self) -> str:
+        """Both in words, such as "breaks closed (3 pending); keeps path axiom, planar"."""
+        details = {"planar": f" (genus {self.genus})", "closed": f" ({self.pending} pending)"}
+        told = ", ".join(f"{r} after step {step}" for r, step in self.breaks.get(PATH_AXIOM, ()))
+        details[PATH_AXIOM] = f" ({told})"
+        broken = ", ".join(f"{name}{details.get(name, '')}" for name in self.breaks)
+        return f"breaks {broken or 'none'}; keeps {', '.join(self.keeps) or 'none'}"
+
+    def document(self) -> dict[str, Any]:
+        """The same as JSON."""
+        return {
+            "breaks": self.breaks,
+            "keeps": self.keeps,
+            "genus": self.genus,
+            "pending": self.pending,
+        }
+
+
+def axioms(grown: Grown, violations: Iterable[Violation]) -> Axioms:
+    """Which axioms and defaults a map breaks, by all the violations that there are if each part is
+    demanded of it."""
+    found = [*violations]
+    broken = {
+        name: _by_step(one for one in found if one[0] in some) for name, some in RULES_OF.items()
+    }
+    breaks = {name: each for name, each in broken.items() if each}
+    return Axioms(breaks, grown.genus(), len(grown.pending()))
+
+
+def axioms_of(experience: Experience, at: Sequence[DState]) -> Axioms:
+    """Which axioms and defaults a map breaks by definition, of a hypothesis given by its dstate
+    after each step."""
+    steps = [(step, *dstate) for step, dstate in enumerate(at)]
+    grown = Grown(experience, dict(enumerate(at)), len(steps) - 1)
+    return axioms(grown, by_definition(experience, steps, PROPERTIES))
 
 
 @dataclass(frozen=True)
 class Verdict:
     """What is wrong with a map: rules broken, with steps, and other faults in words. Of a map whose
-    steps break no rule it can be told which of the axioms and defaults it ``breaks``, with the
-    violations of each, its ``genus``, how many gateways are ``pending``, and its ``exceptions`` to
-    consistent boundaries; None: it is not told."""
+    steps break no rule it can be told which ``axioms`` and defaults it breaks, and its
+    ``exceptions`` to consistent boundaries; None: it is not told."""
 
     where: str
     violations: list[Violation]
     faults: list[str]
     short: bool = False  # the map is of part of the steps
-    breaks: dict[str, list[Violation]] | None = None
-    genus: int | None = None
-    pending: int | None = None
+    axioms: Axioms | None = None
     exceptions: list[NamedException] | None = None
 
     @property
     def sound(self) -> bool:
         return not self.violations and not self.faults
-
-    @property
-    def keeps(self) -> list[str] | None:
-        """The axioms and defaults that the map does not break; None: it is not told."""
-        every = (PATH_AXIOM, *PROPERTIES)
-        return None if self.breaks is None else [one for one in every if one not in self.breaks]
 
     def document(self) -> dict[str, Any]:
         """What is wrong, as JSON."""
@@ -68,10 +112,10 @@ class Verdict:
 
     def told(self) -> dict[str, Any]:
         """What is told of the map besides, as JSON."""
-        told: dict[str, Any] = {"where": self.where}
-        if self.breaks is not None:
-            told |= {"breaks": self.breaks, "keeps": self.keeps}
-            told |= {"genus": self.genus, "pending": self.pending}
+        told: dict[str, Any] = {
+            "where": self.where,
+            **(self.axioms.document() if self.axioms else {}),
+        }
         if self.exceptions is not None:
             told["exceptions"] = [one.document() for one in self.exceptions]
         return told
@@ -81,19 +125,8 @@ class Verdict:
         if not self.sound:
             broken = [f"violation({rule},{step})" for rule, step in self.violations]
             yield f"{self.where}: {'; '.join(broken + self.faults)}"
-        if self.breaks is not None:
-            details = {
-                PATH_AXIOM: ", ".join(
-                    f"{rule} after step {step}" for rule, step in self.breaks.get(PATH_AXIOM, ())
-                ),
-                "planar": f"genus {self.genus}",
-                "closed": f"{self.pending} pending",
-            }
-            broken = [
-                f"{name} ({details[name]})" if name in details else name for name in self.breaks
-            ]
-            keeps = ", ".join(self.keeps or ["none of them"])
-            yield f"{self.where}: breaks {', '.join(broken) or 'none of them'}; keeps {keeps}"
+        if self.axioms:
+            yield f"{self.where}: {self.axioms.words}"
         if self.exceptions:
             many = words.number(len(self.exceptions), "exception")
             yield f"{self.where}: {many} to consistent boundaries"
@@ -188,7 +221,7 @@ def verdicts(
             if not found:
                 rules = by_rules(experience, at, sorted(asked))
                 definition = by_definition(experience, at, sorted(asked))
-            breaks = genus = pending = exceptions = None
+            told = exceptions = None
             if not found and not STEP_RULES & {rule for rule, _ in rules | definition}:
                 found = list(faults(experience, document, entry, at))
                 if rules != definition:
@@ -198,9 +231,7 @@ def verdicts(
                     exceptions = exceptions_of(experience, whole.at)
                     if _places_of(exceptions) != whole.exceptions():
                         found.append("the exceptions are not those by definition")
-                if every:
-                    breaks = _breaks(rules | definition)
-                    genus, pending = whole.genus(), len(whole.pending())
+                told = axioms(whole, rules | definition) if every else None
                 if truth and "real" in entry:
                     real = experience.map_of(tuple((p, s) for _, p, s in at)).isomorphic(truth)
                     if real != entry["real"]:
@@ -215,20 +246,11 @@ def verdicts(
                 found.append("real: only --truth can tell")
             short = len(at) <= seen.steps
             where = f"{document.where}: map {number}"
-            yield Verdict(where, violations, found, short, breaks, genus, pending, exceptions)
+            yield Verdict(where, violations, found, short, told, exceptions)
 
 
 def _by_step(violations: Iterable[Violation]) -> list[Violation]:
     return sorted(violations, key=lambda violation: violation[::-1])
-
-
-def _breaks(violations: set[Violation]) -> dict[str, list[Violation]]:
-    """The axioms and defaults that are broken, each with the violations that say so."""
-    rules = {PATH_AXIOM: PATH_RULES, **{part: (part,) for part in PROPERTIES}}
-    found = {
-        name: _by_step(one for one in violations if one[0] in some) for name, some in rules.items()
-    }
-    return {name: broken for name, broken in found.items() if broken}
 
 
 def _places_of(exceptions: Iterable[NamedException]) -> list[tuple[str, list[int]]]:
