@@ -2,6 +2,7 @@
 with networkx. Neither shares anything with what makes the maps.
 """
 
+from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from itertools import combinations
 from typing import Any
@@ -150,7 +151,8 @@ def _ways(
 class Grown:
     """The map that the steps up to ``step`` make.
 
-    ``links``: the gateway at the other end of a link. ``ahead``: from each gateway, those
+    ``links``: the gateway at the other end of a link. ``first``: the first step through a gateway.
+    ``ahead``: from each gateway, those
     at which one arrives who leaves by it and walks straight on, in their order.
     """
 
@@ -160,8 +162,11 @@ class Grown:
         self.stars = {place: sorted(experience.views[place]) for place in places}
         self.dstate = stands.get(step)
         self.links: dict[Gateway, Gateway] = {}
+        self.first: dict[Gateway, int] = {}
         for t, out, arrival in _ways(experience, stands):
             if t <= step:
+                self.first.setdefault(out, t)
+                self.first.setdefault(arrival, t)
                 self.links.setdefault(out, arrival)
                 self.links.setdefault(arrival, out)
         walks: nx.DiGraph[Gateway] = nx.DiGraph()
@@ -270,6 +275,30 @@ class Grown:
                     met = {place for place, _ in self.ahead.get((place, other), [])}
                     beside[turn > self.half].update(met)
         return {place for place, _ in headings}, *beside
+
+    def across(self, gateway: Gateway) -> frozenset[Gateway]:
+        """A gateway and the one straight across."""
+        return frozenset((gateway, self.opposite(gateway)))
+
+    def name(self, path: list[Gateway]) -> int | frozenset[Gateway]:
+        """The first step along a path; of one that no step travels, its gateways."""
+        ends = {end for heading in path for end in self.across(heading)}
+        steps = [self.first[end] for end in ends if end in self.first]
+        return min(steps) if steps else self.across(path[0])
+
+    def exceptions(self) -> Iterator[tuple[str, list[list[Gateway]], set[int]]]:
+        """Its exceptions to consistent boundaries: of what kind each is, of which paths, and at
+        which places."""
+        paths = [(path, Counter(place for place, _ in path)) for path in self.paths()]
+        for (path, places), (another, others) in combinations(paths, 2):
+            if len(shared := places.keys() & others.keys()) > 1:
+                yield "meet twice", [path, another], shared
+        for path, places in paths:
+            if again := {place for place, times in places.items() if times > 1}:
+                yield "place twice", [path], again
+            _, right, left = self.one_sided(path[0])
+            for place in right & left:
+                yield "both sides", [path], {place}
 
     def two_sided(self, _: int) -> bool:
         """Whether a place is left and right of a path, or on it and beside it."""

@@ -73,8 +73,6 @@ class Document:
                 yield part
         if self.claims.get("bound") is not None:
             yield f"bound({self.claims['bound']})"
-        if self.claims.get("optimal"):
-            yield "boundary"
         if self.claims.get("kind") in ("optimal", BEST_FIRST):
             yield "closed"
 

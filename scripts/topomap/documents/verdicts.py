@@ -1,5 +1,6 @@
 """What is wrong with maps, by two checkers, and whether they are what is said of them."""
 
+from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import asdict, dataclass, field
 from typing import Any
@@ -188,9 +189,11 @@ def _noise(entry: dict[str, Any], claims: dict[str, Any]) -> list[int]:
 def _cost(grown: Grown, claims: dict[str, Any]) -> list[int]:
     """What was minimised, most important first."""
     parts = claims.get("parts", ())
-    minimal = "minimal" in parts or claims.get("optimal") or claims.get("kind") == BEST_FIRST
-    genus = [grown.genus()] if "genus" in parts else []
-    return genus + ([len(grown.paths()), len(grown.stars)] if minimal else [])
+    optimal = claims.get("optimal", False)
+    minimal = "minimal" in parts or optimal or claims.get("kind") == BEST_FIRST
+    cost = [grown.genus()] if "genus" in parts else []
+    cost += [sum(1 for _ in grown.exceptions())] if "exceptions" in parts or optimal else []
+    return cost + ([len(grown.paths()), len(grown.stars)] if minimal else [])
 
 
 def _places(grown: Grown, experience: Experience, said: Any) -> bool:
@@ -227,6 +230,24 @@ def _faces(grown: Grown, _: Experience, said: Any) -> bool:
     return sorted(from_least(_gateways(face)) for face in list_of(said)) == ours
 
 
+def _exceptions(grown: Grown, _: Experience, said: Any) -> bool:
+    def named(name: Any) -> Any:
+        """A step; or, of a path that is not travelled, its gateway and the one opposite."""
+        if is_number(name):
+            return name
+        place, slot = name.split(".")
+        return grown.across((int(place), int(slot)))
+
+    theirs = Counter(
+        (one["kind"], frozenset(map(named, one["paths"])), frozenset(one["places"]))
+        for one in list_of(said)
+    )
+    return theirs == Counter(
+        (kind, frozenset(map(grown.name, paths)), frozenset(places))
+        for kind, paths, places in grown.exceptions()
+    )
+
+
 def _gateways(said: Any) -> list[Gateway]:
     return [_gateway(gateway) for gateway in list_of(said)]
 
@@ -244,6 +265,7 @@ KEYS: dict[str, Callable[[Grown, Experience, Any], bool]] = {
     "paths": _paths,
     "faces": _faces,
     "genus": lambda grown, _, said: is_number(said) and grown.genus() == said,
+    "exceptions": _exceptions,
     "pending": lambda grown, _, said: sorted(_gateways(said)) == sorted(grown.pending()),
     "dstate": lambda grown, _, said: _gateway(said) == grown.dstate,
 }

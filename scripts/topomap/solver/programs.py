@@ -18,6 +18,7 @@ from topomap.solver import phases
 from topomap.solver.threads import Put, in_thread, prepare
 
 FORMS = {"work": ENCODINGS, "paper": ENCODINGS / "paper"}
+BEYOND = {"exceptions": "beyond/exceptions", "no_path_axiom": "../no_path_axiom"}  # the paper
 Answer = TypeVar("Answer")
 
 
@@ -28,7 +29,8 @@ def control(
     arguments = ["0", *options]
     if query.optimizes:
         arguments.append("--opt-mode=optN")
-    files = [*entry, *sorted(query.parts)]
+    stated = query.encoding == "paper"
+    files = [*entry, *(BEYOND.get(p, p) if stated else p for p in sorted(query.parts))]
     if query.places is not None:
         files.append("bound")
         arguments += ["-c", f"places={query.places}"]
