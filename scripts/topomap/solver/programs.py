@@ -10,6 +10,7 @@ import clingo
 from topomap.model.experience import Experience
 from topomap.model.found import Cube
 from topomap.model.query import Query
+from topomap.model.vocabulary import BEYOND
 from topomap.runtime.errors import InputError
 from topomap.runtime.folders import ENCODINGS
 from topomap.runtime.status import INTERRUPT
@@ -18,7 +19,6 @@ from topomap.solver import phases
 from topomap.solver.threads import Put, in_thread, prepare
 
 FORMS = {"work": ENCODINGS, "paper": ENCODINGS / "paper"}
-BEYOND = {"exceptions": "beyond/exceptions", "no_path_axiom": "../no_path_axiom"}  # the paper
 Answer = TypeVar("Answer")
 
 
