@@ -36,8 +36,7 @@ OF_ENTRY = {
 FOR_PROGRAMS = ["phases/topomap", "phases/visits", "phases/runs", "phases/lines", "online"]
 ENTRIES = [*OF_ENTRY, *FOR_PROGRAMS]
 ALONE = ("input", "check", "explore", "unseen", "bisimilar")  # programs of their own
-INCLUDED = ("theory/", "explore/", "paper/beyond/told")
-INCLUDED += ("paper/path_axiom", "paper/paths", "paper/sides")
+INCLUDED = (
     "theory/",
     "explore/",
     "paper/path_axiom",
