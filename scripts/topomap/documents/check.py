@@ -2,6 +2,7 @@
 with networkx. Neither shares anything with what makes the maps.
 """
 
+from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from itertools import combinations
 from typing import Any
@@ -155,19 +156,22 @@ def _ways(
 class Grown:
     """The map that the steps up to ``step`` make.
 
-    ``links``: the gateway at the other end of a link. ``ahead``: from each gateway, those
-    at which one arrives who leaves by it and walks straight on, in their order.
+    ``links``: the gateway at the other end of a link. ``first``: the first step through a gateway.
+    ``ahead``: from each gateway, those at which one arrives who leaves by it and walks straight on,
+    in their order.
     """
 
     def __init__(self, experience: Experience, stands: dict[int, Gateway], step: int):
         self.slots, self.half, self.step = experience.slots, experience.slots // 2, step
         places = sorted({place for t, (place, _) in stands.items() if t <= step})
         self.stars = {place: sorted(experience.views[place]) for place in places}
-        self.at = [stands[t] for t in range(step + 1) if t in stands]
         self.dstate = stands.get(step)
         self.links: dict[Gateway, Gateway] = {}
+        self.first: dict[Gateway, int] = {}
         for t, out, arrival in _ways(experience, stands):
             if t <= step:
+                self.first.setdefault(out, t)
+                self.first.setdefault(arrival, t)
                 self.links.setdefault(out, arrival)
                 self.links.setdefault(arrival, out)
         walks: nx.DiGraph[Gateway] = nx.DiGraph()
@@ -274,19 +278,28 @@ class Grown:
                     sides[turn > self.half].update(met)
         return sides
 
-    def exceptions(self) -> list[tuple[str, list[int]]]:
-        """The exceptions to consistent boundaries, each with its places: two paths that share some,
-        a path that holds some twice, and a place at the right and left of a path."""
-        paths = self.paths()
-        places = [[place for place, _ in path] for path in paths]
-        shared = [set(one) & set(other) for one, other in combinations(places, 2)]
-        again = [{place for place in one if one.count(place) > 1} for one in places]
-        both = [place for path in paths for place in set.intersection(*self.beside(path))]
-        return sorted(
-            [("meet twice", sorted(some)) for some in shared if len(some) > 1]
-            + [("place twice", sorted(some)) for some in again if some]
-            + [("both sides", [place]) for place in both]
-        )
+    def across(self, gateway: Gateway) -> frozenset[Gateway]:
+        """A gateway and the one straight across."""
+        return frozenset((gateway, self.opposite(gateway)))
+
+    def name(self, path: list[Gateway]) -> int | frozenset[Gateway]:
+        """The first step along a path; of one that no step travels, its gateways."""
+        ends = {end for heading in path for end in self.across(heading)}
+        steps = [self.first[end] for end in ends if end in self.first]
+        return min(steps) if steps else self.across(path[0])
+
+    def exceptions(self) -> Iterator[tuple[str, list[list[Gateway]], set[int]]]:
+        """Its exceptions to consistent boundaries: of what kind each is, of which paths, and at
+        which places."""
+        paths = [(path, Counter(place for place, _ in path)) for path in self.paths()]
+        for (path, places), (another, others) in combinations(paths, 2):
+            if len(shared := places.keys() & others.keys()) > 1:
+                yield "meet twice", [path, another], shared
+        for path, places in paths:
+            if again := {place for place, times in places.items() if times > 1}:
+                yield "place twice", [path], again
+            for place in set.intersection(*self.beside(path)):
+                yield "both sides", [path], {place}
 
     def slanted(self, _: int) -> bool:
         """Whether two paths share two places, or three meet pairwise at three."""
@@ -306,6 +319,6 @@ BROKEN: dict[str, Callable[[Grown, int], bool]] = {
     "bound": Grown.over,
     "closed": lambda grown, _: bool(grown.pending()),
     "travelled": Grown.untravelled,
-    "boundary": lambda grown, _: bool(grown.exceptions()),
+    "boundary": lambda grown, _: any(grown.exceptions()),
     "perpendicular": Grown.slanted,
 }

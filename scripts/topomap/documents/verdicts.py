@@ -1,6 +1,6 @@
 """What is wrong with maps, by two checkers, and whether they are what is said of them."""
 
-import json
+from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import Any
@@ -228,8 +228,9 @@ def verdicts(
                     found.append("check.lp and the check by definition do not agree on it")
                 whole = Grown(experience, {t: (p, s) for t, p, s in at}, len(at) - 1)
                 if named:
-                    exceptions = exceptions_of(experience, whole.at)
-                    if _places_of(exceptions) != whole.exceptions():
+                    exceptions = exceptions_of(experience, [(p, s) for _, p, s in at])
+                    plain = [one.document() for one in exceptions]
+                    if not _exceptions(whole, experience, plain):
                         found.append("the exceptions are not those by definition")
                 told = axioms(whole, rules | definition) if every else None
                 if truth and "real" in entry:
@@ -251,11 +252,6 @@ def verdicts(
 
 def _by_step(violations: Iterable[Violation]) -> list[Violation]:
     return sorted(violations, key=lambda violation: violation[::-1])
-
-
-def _places_of(exceptions: Iterable[NamedException]) -> list[tuple[str, list[int]]]:
-    """Exceptions without the names of the paths, in the order of ``Grown.exceptions``."""
-    return sorted((one.kind, list(one.places)) for one in exceptions)
 
 
 def _mistaken(
@@ -312,11 +308,12 @@ def _noise(entry: dict[str, Any], claims: dict[str, Any]) -> list[int]:
 
 def _cost(grown: Grown, claims: dict[str, Any]) -> list[int]:
     """What was minimised, most important first."""
-    parts, best = claims.get("parts", ()), claims.get("optimal")
-    genus = [grown.genus()] if "genus" in parts else []
-    exceptions = [len(grown.exceptions())] if "exceptions" in parts or best else []
-    minimal = "minimal" in parts or best or claims.get("kind") == BEST_FIRST
-    return genus + exceptions + ([len(grown.paths()), len(grown.stars)] if minimal else [])
+    parts = claims.get("parts", ())
+    optimal = claims.get("optimal", False)
+    minimal = "minimal" in parts or optimal or claims.get("kind") == BEST_FIRST
+    cost = [grown.genus()] if "genus" in parts else []
+    cost += [sum(1 for _ in grown.exceptions())] if "exceptions" in parts or optimal else []
+    return cost + ([len(grown.paths()), len(grown.stars)] if minimal else [])
 
 
 def _places(grown: Grown, experience: Experience, said: Any) -> bool:
@@ -353,12 +350,25 @@ def _faces(grown: Grown, _: Experience, said: Any) -> bool:
     return sorted(from_least(_gateways(face)) for face in list_of(said)) == ours
 
 
-def _exceptions(grown: Grown, experience: Experience, said: Any) -> bool:
-    def plain(exceptions: Iterable[Any]) -> list[str]:
-        return sorted(json.dumps(one, sort_keys=True) for one in exceptions)
+def _exceptions(grown: Grown, _: Experience, said: Any) -> bool:
+    def named(name: Any) -> Any:
+        """A step; or, of a path that is not travelled, its gateway and the one opposite."""
+        if is_number(name):
+            return name
+        place, slot = name.split(".")
+        return grown.across((int(place), int(slot)))
 
-    ours = (one.document() for one in exceptions_of(experience, grown.at))
-    return plain(list_of(said)) == plain(ours)
+    def plain(one: Any) -> Any:
+        """An exception, of numbers and texts only."""
+        if one.keys() != {"kind", "paths", "places"} or not all(map(is_number, one["places"])):
+            raise ValueError
+        return one["kind"], frozenset(map(named, one["paths"])), frozenset(one["places"])
+
+    theirs = Counter(map(plain, list_of(said)))
+    return theirs == Counter(
+        (kind, frozenset(map(grown.name, paths)), frozenset(places))
+        for kind, paths, places in grown.exceptions()
+    )
 
 
 def _gateways(said: Any) -> list[Gateway]:
@@ -377,8 +387,8 @@ KEYS: dict[str, Callable[[Grown, Experience, Any], bool]] = {
     "links": _links,
     "paths": _paths,
     "faces": _faces,
-    "exceptions": _exceptions,
     "genus": lambda grown, _, said: is_number(said) and grown.genus() == said,
+    "exceptions": _exceptions,
     "pending": lambda grown, _, said: sorted(_gateways(said)) == sorted(grown.pending()),
     "dstate": lambda grown, _, said: _gateway(said) == grown.dstate,
 }

@@ -20,6 +20,10 @@ DEMANDS = tuple(part for part in PARTS if part not in (*OPTIMIZING, *RELAXING))
 PROPERTIES = tuple(part for part in DEMANDS if part != "euler")  # which is another rule for planar
 FORMS = ("work", "paper")  # of the encoding: the one that does the work, and the statement
 STATED = {"planar", "closed", "travelled", "boundary", "perpendicular", "minimal"}  # its parts
+BEYOND = {  # the files of those that go with the statement, beyond the paper
+    "exceptions": "beyond/exceptions",
+    "no_path_axiom": "../no_path_axiom",
+}
 
 # What a statement can say of the whole map: that it has what a part demands, that some path is
 # circular, or that two paths share two places or more.

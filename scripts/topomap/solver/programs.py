@@ -10,6 +10,7 @@ import clingo
 from topomap.model.experience import Experience
 from topomap.model.found import Cube
 from topomap.model.query import Query
+from topomap.model.vocabulary import BEYOND
 from topomap.runtime.errors import InputError
 from topomap.runtime.folders import ENCODINGS
 from topomap.runtime.status import INTERRUPT
@@ -28,7 +29,8 @@ def control(
     arguments = ["0", *options]
     if query.optimizes:
         arguments.append("--opt-mode=optN")
-    files = [*entry, *sorted(query.parts)]
+    stated = query.encoding == "paper"
+    files = [*entry, *(BEYOND.get(p, p) if stated else p for p in sorted(query.parts))]
     if query.places is not None:
         files.append("bound")
         arguments += ["-c", f"places={query.places}"]
