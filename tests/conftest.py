@@ -16,7 +16,7 @@ import hypothesis  # noqa: F401 -- else at the end, beside threads: Python 3.11 
 import pytest
 from oracles.brute_force import Hypothesis, best, tree
 from topomap.cli import main
-from topomap.model.vocabulary import OPTIMIZING
+from topomap.model.vocabulary import BEYOND, OPTIMIZING
 from topomap.runtime.files import output
 from topomap.solver.programs import FORMS
 
@@ -75,8 +75,12 @@ def pytest_terminal_summary(terminalreporter):
 
 def forms(*parts):
     """The encodings that have these parts: the one that does the work, and the statement."""
-    files = {form: [folder / f"{part}.lp" for part in parts] for form, folder in FORMS.items()}
-    return [form for form in FORMS if all(file.is_file() for file in files[form])]
+    return [form for form in FORMS if all(part_file(form, part).is_file() for part in parts)]
+
+
+def part_file(form, part):
+    """The file of a part of the encoding."""
+    return FORMS[form] / f"{BEYOND.get(part, part) if form == 'paper' else part}.lp"
 
 
 def beyond(facts):
@@ -110,7 +114,7 @@ def costs(parts, facts, *arguments, encoding="work"):
     control = clingo.Control(options, logger=lambda _, text: messages.append(text))
     more = beyond(facts) if encoding == "paper" else []
     for part in ("topomap", *more, *parts):
-        control.load(str(FORMS[encoding] / f"{part}.lp"))
+        control.load(str(part_file(encoding, part)))
     control.add("base", [], facts)
     control.ground([("base", [])])
     found = []
@@ -118,7 +122,8 @@ def costs(parts, facts, *arguments, encoding="work"):
     def read(model):
         if optimal and not model.optimality_proven:
             return
-        at = sorted([a.number for a in s.arguments] for s in model.symbols(shown=True))
+        shown = [one for one in model.symbols(shown=True) if one.name != "exception"]
+        at = sorted([a.number for a in one.arguments] for one in shown)
         assert [step for step, _, _ in at] == list(range(len(at)))
         found.append((tuple((place, slot) for _, place, slot in at), tuple(model.cost)))
 
@@ -184,7 +189,7 @@ class Truth:
     def least(self, key, hypotheses):
         """Those of the hypotheses whose figure is least."""
         figures = {at: key(self.final[at]) for at in hypotheses}
-        fewest = min(figures.values())
+        fewest = min(figures.values(), default=None)
         return {at for at, figure in figures.items() if figure == fewest}
 
     def best(self, closed):

@@ -119,7 +119,7 @@ def test_answers_are_those_of_all_maps(cases):
         demand(found, experience, tests, maps, [*parts, *([f"bound({bound})"] if bound else [])])
         best = truth.best(True) or truth.best(False)
         found = settled(experience, texts, ANY, optimal=True)
-        demand(found, experience, tests, {at: truth.final[at] for at in best}, ["boundary"])
+        demand(found, experience, tests, {at: truth.final[at] for at in best})
         assert found.kind == ("optimal" if truth.best(True) else "best so far")
 
 
