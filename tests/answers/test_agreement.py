@@ -10,7 +10,7 @@ from dataclasses import replace
 from itertools import combinations
 
 import pytest
-from conftest import BIN, ENCODINGS, PARTS, TRIED, Truth, answers, costs, forms
+from conftest import BIN, ENCODINGS, PARTS, TRIED, Truth, answers, costs, forms, part_file
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from oracles.known_answers import EXPERIENCES
@@ -21,7 +21,6 @@ from topomap.paper.statistics import Tally
 from topomap.runtime.watch import Watch
 from topomap.search import traversal
 from topomap.solver import solving
-from topomap.solver.programs import FORMS
 
 QUICK = settings(
     max_examples=12,
@@ -43,8 +42,7 @@ def case(experience, parts=(), *arguments, form="work"):
     try:
         yield
     except AssertionError as error:
-        folder = FORMS[form].relative_to(ENCODINGS.parent)
-        files = " ".join(f"{folder}/{part}.lp" for part in ("topomap", *parts))
+        files = " ".join(str(part_file(form, part)) for part in ("topomap", *parts))
         switches = " ".join(f"--{part}" for part in parts)
         error.add_note(f"save as case.lp:\n{experience.facts()}")
         error.add_note(f"clingo {files} case.lp {' '.join(arguments)} 0")
@@ -125,6 +123,7 @@ def agree_on_preferences(experience, truth):
         ("minimal",): lambda h: h.cost(),
         ("genus",): lambda h: (h.genus(),),
         ("genus", "minimal"): lambda h: (h.genus(), *h.cost()),
+        ("genus", "exceptions", "minimal"): lambda h: (h.genus(), *h.worth()),
     }
     for parts, order in orders.items():
         all_give(truth.least(order, final), experience, parts)
@@ -135,9 +134,9 @@ def agree_on_preferences(experience, truth):
             with case(experience, parts, bounds, form=form):
                 assert costs(parts, facts, bounds, encoding=form) == figures
     for closed in (("closed",), ()):
-        all_give(truth.best(closed=bool(closed)), experience, (*closed, "boundary", "minimal"))
-    for form in forms("closed", "boundary", "minimal"):
-        with case(experience, ("closed", "boundary", "minimal"), "--opt-mode=optN", form=form):
+        all_give(truth.best(closed=bool(closed)), experience, (*closed, "exceptions", "minimal"))
+    for form in forms("closed", "exceptions", "minimal"):
+        with case(experience, ("closed", "exceptions", "minimal"), "--opt-mode=optN", form=form):
             found = best(experience, solving.hypotheses, form)
             assert found == best(experience, traversal.hypotheses)
             expected = truth.best(closed=True) or truth.best(closed=False)
@@ -244,7 +243,8 @@ def are_as_many_in_the_mirror(experience, truth):
             with case(image, parts, form=form):
                 found = answers(parts, image.facts(), encoding=form)
                 assert len(found) == len(truth.having(*parts))
-    for parts in ("minimal",), ("genus",), ("closed", "boundary", "minimal"):
+    best = ("closed", "exceptions", "minimal")
+    for parts in ("minimal",), ("genus",), ("closed", "boundary", "minimal"), best:
         for form in forms(*parts):
             with case(image, parts, "--opt-mode=optN", form=form):
                 here, there = (

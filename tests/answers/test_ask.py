@@ -9,7 +9,7 @@ import clingo
 import pytest
 from conftest import ENCODINGS, ROOT, TRIED, Truth, run
 from oracles.brute_force import Hypothesis
-from oracles.statements import FIGURES, PROPERTIES, RELATIONS, relation
+from oracles.statements import FIGURES, PROPERTIES, QUALITIES, RELATIONS, relation
 from oracles.worlds import WORLDS, random_experience
 from topomap.documents.check import by_definition, by_rules
 from topomap.model import vocabulary
@@ -37,13 +37,14 @@ GRIDS = {name: read(ROOT / f"instances/grid-{name}.lp") for name in ("3x3-snake"
 def test_each_statement_of_the_vocabulary_is_defined_a_second_time():
     """A new part of the theory is a statement at once; a meaning of it must not be forgotten."""
     assert {*PROPERTIES} == {*vocabulary.PROPERTIES}
+    assert {*QUALITIES} == {*vocabulary.QUALITIES}
     assert {*RELATIONS} == {*vocabulary.RELATIONS}
     assert {*FIGURES} == {*vocabulary.FIGURES}
 
 
 def statement(draw, experience):
     """A statement, and what it says of a hypothesis; of gateways that were seen, mostly."""
-    kind = draw.choice([*RELATIONS, *RELATIONS, *FIGURES, *PROPERTIES])
+    kind = draw.choice([*RELATIONS, *RELATIONS, *FIGURES, *QUALITIES])
     space = draw.choice(["", "", " ", "  ", "\n\t"])
     if kind in RELATIONS and (kind != "pending" or draw.random() < 0.5):
         numbers = relation(draw, experience, kind)
@@ -55,7 +56,7 @@ def statement(draw, experience):
         text, numbers = f"{space}{kind}{space}{sign}{space}{number}", []
         test = lambda h: SIGNS[sign](FIGURES[kind](h), number)  # noqa: E731
     else:
-        text, numbers, test = kind, [], PROPERTIES[kind]
+        text, numbers, test = kind, [], QUALITIES[kind]
     negations = draw.choice([0, 0, 0, 1, 2])
     return "not  " * negations + text, lambda h: test(h, *numbers) == (negations % 2 == 0)
 
@@ -93,13 +94,14 @@ def demand(answers, experience, tests, maps, demands=()):
         TRIED["maps that ask shows, checked"] += 1
 
 
-def drawn(draw, number):
-    """An experience, as a rule one of several maps, and what the independent search says of it."""
+def drawn(draw, number, axiom=True):
+    """An experience, as a rule one of several maps, and what the independent search says of it,
+    with or without the path axiom."""
     while True:
         experience = draw.choice([*WORLDS.values()]) if number % 4 == 0 else None
         if experience is None or experience.steps > 9:
             experience = random_experience(draw, draw.choice([5, 7, 9]))
-        truth = Truth(experience)
+        truth = Truth(experience, axiom)
         if number % 8 == 1 or 1 < len(truth.final) < 100:
             return experience, truth
 
@@ -117,8 +119,41 @@ def test_answers_are_those_of_all_maps(cases):
         demand(found, experience, tests, maps, [*parts, *([f"bound({bound})"] if bound else [])])
         best = truth.best(True) or truth.best(False)
         found = settled(experience, texts, ANY, optimal=True)
-        demand(found, experience, tests, {at: truth.final[at] for at in best}, ["boundary"])
+        demand(found, experience, tests, {at: truth.final[at] for at in best})
         assert found.kind == ("optimal" if truth.best(True) else "best so far")
+
+
+@pytest.mark.parametrize("cases", [40, pytest.param(1000, marks=pytest.mark.long)])
+def test_answers_without_the_path_axiom(cases):
+    """Loops, circular paths and paths that cross themselves count right."""
+    tried = set()
+    for number in range(cases):
+        draw = random.Random(f"no axiom {cases} {number}")
+        experience, truth = drawn(draw, number, axiom=False)
+        texts, tests = zip(*(statement(draw, experience) for _ in range(6)), strict=True)
+        figures = [("paths", FIGURES["paths"]), ("exceptions", FIGURES["exceptions"])]
+        more = [
+            (f"{name} {sign} {count}", lambda h, f=f, sign=sign, n=count: SIGNS[sign](f(h), n))
+            for name, f in figures
+            for sign in draw.sample([*SIGNS], 2)
+            for count in [f(draw.choice([*truth.final.values()]))]
+        ]
+        more += [(name, QUALITIES[name]) for name in ("circular", "meets_twice", "boundary")]
+        texts, tests = zip(*zip(texts, tests, strict=True), *more, strict=True)
+        parts = [part for part in PROPERTIES if draw.random() < 0.12]
+        maps = {at: truth.final[at] for at in truth.having(*parts)}
+        query = Query(frozenset([*parts, "no_path_axiom"]))
+        found = settled(experience, texts, query)
+        demand(found, experience, tests, maps, [*parts, "no_path_axiom"])
+        tried |= {(one.statement.term, one.holds) for one in found.each}
+    assert tried >= {("circular", "some"), ("meets_twice", "some"), ("circular", "none")}
+
+
+def test_no_path_is_circular_by_the_path_axiom():
+    """So the statement is settled by it, in each map."""
+    for number in range(10):
+        experience, truth = drawn(random.Random(f"circular {number}"), number)
+        demand(settled(experience, ["circular"]), experience, [QUALITIES["circular"]], truth.final)
 
 
 @pytest.mark.parametrize("part", ["genus", "minimal"])

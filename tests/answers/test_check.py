@@ -5,14 +5,19 @@ import json
 import random
 
 import pytest
-from conftest import ENCODINGS, TRIED, run
+import topomap
+from conftest import ENCODINGS, ROOT, TRIED, plain, run
+from oracles.brute_force import Hypothesis, tree
 from oracles.maps_with_errors import DEMANDS, MAPS, mapped, of_texts, placed, with_errors
+from oracles.worlds import random_experience
 from topomap.documents.answers import map_json
-from topomap.documents.check import STEP_RULES, by_definition, by_rules
+from topomap.documents.check import NO_PATH_AXIOM, STEP_RULES, Grown, by_definition, by_rules
+from topomap.model.vocabulary import PROPERTIES
 from topomap.worlds.environment import grid
 from topomap.worlds.instance import instance
 
 GRID = "instances/grid-3x3-snake.lp"
+CASES = "oxbow", "loop"
 
 
 @pytest.mark.parametrize("judge", [by_rules, by_definition])
@@ -48,6 +53,190 @@ def test_the_checkers_agree_on_errors():
 def test_the_checkers_agree_on_many_errors():
     for number in range(1000):
         agree_on_errors(random.Random(f"many errors {number}"), 14, marker=number % 3 == 2)
+
+
+def expected(world, at, axiom):
+    """What a map breaks, by the independent search: the first step, or the last one."""
+    whole, last = Hypothesis(world, at), len(at) - 1
+
+    def first(breaks):
+        return next(t for t in range(last + 1) if breaks(Hypothesis(world, at[: t + 1])))
+
+    def comes_back(circular):
+        def breaks(h):
+            return any(
+                (end == h.opposite(gateway)) == circular
+                for gateway in h.link
+                for end in h.ray(gateway)
+                if end[0] == gateway[0]
+            )
+
+        return breaks
+
+    found = set()
+    tests = {"planar": lambda h: h.genus() != 0, "boundary": lambda h: any(h.exceptions())}
+    if axiom:
+        tests |= {"path_circular": comes_back(True), "path_twice": comes_back(False)}
+    for rule, breaks in tests.items():
+        if breaks(whole):
+            found.add((rule, first(breaks)))
+    for part in ("closed", "travelled", "perpendicular"):
+        if not getattr(whole, part)():
+            found.add((part, last))
+    return found
+
+
+def without_the_axiom(cases, name, most):
+    """On maps of which some break the path axiom: the checkers agree with brute force on each part,
+    with the axiom and without it, and on the exceptions."""
+    judged = 0
+    for seed in range(cases):
+        draw = random.Random(f"{name} {seed}")
+        experience = random_experience(draw, draw.choice([4, 5, 6, 7]))
+        world = plain(experience)
+        ats = tree(world, axiom=False)[-1]
+        for at in draw.sample(ats, min(most, len(ats))):
+            steps = [(step, *dstate) for step, dstate in enumerate(at)]
+            whole = Hypothesis(world, at)
+            grown = Grown(experience, dict(enumerate(at)), len(at) - 1)
+            kinds = [kind for kind, *_ in grown.exceptions()]
+            told = tuple(kinds.count(kind) for kind in ("meet twice", "place twice", "both sides"))
+            assert told == whole.exceptions()
+            for axiom in (True, False):
+                demands = [*PROPERTIES, *([] if axiom else [NO_PATH_AXIOM])]
+                found = expected(world, at, axiom)
+                for judge in (by_rules, by_definition):
+                    assert judge(experience, steps, demands) == found, (experience.facts(), at)
+            judged += 1
+            TRIED["maps judged that break the path axiom"] += whole.breaks_path_axiom()
+            TRIED["maps judged with exceptions"] += any(told)
+    return judged
+
+
+def test_maps_are_judged_without_the_path_axiom():
+    assert without_the_axiom(250, "classes", 1) == 250
+
+
+@pytest.mark.long
+def test_many_maps_are_judged_without_the_path_axiom():
+    assert without_the_axiom(3000, "many classes", 3) > 5000
+
+
+def test_the_fact_says_what_the_demand_says():
+    """Either takes the axiom away, and nothing else."""
+    rules = {rule: (steps, broken) for rule, steps, _, broken, _ in MAPS}
+    for rule, fact in (("path_twice", True), ("path_circular", True), ("itself", False)):
+        steps, broken = rules[rule]
+        at = "".join(f"at({t},{p},{s})." for t, p, s in placed(broken))
+        text = of_texts(steps).facts() + at
+        for more in ("no_path_axiom.", "demand(no_path_axiom)."):
+            done = run("clingo", ENCODINGS / "check.lp", "-", input=text + more)
+            assert (f"violation({rule}," in done.stdout) != fact
+        done = run("clingo", ENCODINGS / "check.lp", "-", input=text)
+        assert f"violation({rule}," in done.stdout
+
+
+AXIOMS = {  # and defaults, by the independent search
+    "path axiom": lambda h: not h.breaks_path_axiom(),
+    "planar": lambda h: h.genus() == 0,
+    "closed": Hypothesis.closed,
+    "travelled": Hypothesis.travelled,
+    "boundary": Hypothesis.boundary,
+    "perpendicular": Hypothesis.perpendicular,
+}
+
+
+def test_which_axioms_and_defaults_a_map_breaks():
+    """All of them at once, with what the map has of each; and none is a fault unless demanded."""
+    assert {*AXIOMS} == {"path axiom", *PROPERTIES}
+    for seed in range(60):
+        experience = random_experience(random.Random(f"all {seed}"), 6)
+        world = plain(experience)
+        ats = tree(world, axiom=False)[-1][:4]
+        maps = [{"at": [[step, *dstate] for step, dstate in enumerate(at)]} for at in ats]
+        judged = topomap.check(experience, maps, every=True)
+        assert judged
+        told = judged.document()["maps"]
+        for verdict, at, said in zip(judged.verdicts, ats, told, strict=True):
+            whole = Hypothesis(world, at)
+            broken = {name for name, keeps in AXIOMS.items() if not keeps(whole)}
+            assert verdict.axioms.breaks.keys() == said["breaks"].keys() == broken
+            assert (
+                verdict.axioms.keeps
+                == said["keeps"]
+                == [one for one in AXIOMS if one not in broken]
+            )
+            assert (said["genus"], said["pending"]) == (whole.genus(), len(whole.pending()))
+            assert len(said["exceptions"]) == sum(whole.exceptions())
+            TRIED["maps judged by all parts at once"] += 1
+
+
+def test_check_all_names_what_each_map_breaks(inside, tmp_path):
+    """The oxbow has a closed map with exceptions, and an open one without; the loop breaks the path
+    axiom. A fault is what is demanded, or said in the file, and does not hold."""
+    maps, oxbow, loop = tmp_path / "maps.json", *(ROOT / f"tests/cases/{n}.lp" for n in CASES)
+    assert not inside("solve", oxbow, "--planar", "--json", "-o", maps).returncode
+    done = inside("check", "--all", oxbow, maps)
+    named = [one.words for one in topomap.solve(topomap.read(oxbow), optimal=True)[0].exceptions]
+    assert (done.returncode, done.stdout.splitlines()) == (
+        0,
+        [
+            f"{maps}: map 1: breaks boundary, perpendicular; "
+            "keeps path axiom, planar, closed, travelled",
+            f"{maps}: map 1: 5 exceptions to consistent boundaries",
+            *(f"  {words}" for words in named),
+            f"{maps}: map 2: breaks closed (3 pending), travelled; "
+            "keeps path axiom, planar, boundary, perpendicular",
+            "2 maps, none unsound",
+        ],
+    )
+    assert inside("check", "--all", oxbow, maps, "--closed").returncode == 1
+    call = ["solve", loop, "--no-path-axiom", "--closed", "--json", "-o", maps]
+    assert not inside(*call).returncode
+    document = json.loads(maps.read_text())
+    first = f"{maps}: map 1: breaks path axiom (path_twice after step 1), boundary; keeps planar, "
+    sound, unsound = "1 map, none unsound", f"{maps}: map 1: violation(path_twice,1)"
+    for parts, options, status, line in (
+        (["closed", "no_path_axiom"], [], 0, sound),
+        (["closed", "no_path_axiom"], ["--all"], 0, first),
+        (["closed"], [], 1, unsound),
+        (["closed"], ["--all"], 1, unsound),
+        (["closed"], ["--no-path-axiom"], 0, sound),
+        (None, ["--all"], 0, first),
+        (None, [], 1, unsound),
+    ):
+        said = {key: value for key, value in document.items() if key != "parts"}
+        maps.write_text(json.dumps(said if parts is None else {**said, "parts": parts}))
+        done = inside("check", loop, maps, *options)
+        assert (done.returncode, done.stdout[: len(line)]) == (status, line)
+
+
+def test_the_exceptions_that_a_file_tells_are_verified(inside, tmp_path):
+    maps, oxbow = tmp_path / "maps.json", ROOT / "tests/cases/oxbow.lp"
+    call = ["solve", oxbow, "--planar", "--optimal", "--json", "-o", maps]
+    assert not inside(*call).returncode
+    document = json.loads(maps.read_text())
+    done = json.loads(inside("check", oxbow, maps, "--json").stdout)
+    assert done["unsound"] == []
+    (told,), (one,) = done["maps"], document["maps"]
+    said = one["exceptions"]
+    assert told["exceptions"] == said
+    fault = "exceptions: not what at says"
+    for wrong, faults in (
+        (said[::-1], []),
+        (said[1:], [fault]),
+        ([{**said[0], "places": [1, 4]}, *said[1:]], [fault]),
+        ([{**said[0], "paths": [2, 5]}, *said[1:]], [fault]),
+        ([*said, said[0]], [fault]),
+        ({}, [fault]),
+    ):
+        maps.write_text(
+            json.dumps({**document, "maps": [{**document["maps"][0], "exceptions": wrong}]})
+        )
+        done = json.loads(inside("check", oxbow, maps, "--json").stdout)
+        assert [fault for one in done["unsound"] for fault in one["faults"]] == faults
+    maps.write_text(json.dumps({**document, "cost": [4, *document["cost"][1:]]}))
+    assert f"cost: it is {document['cost']}" in inside("check", oxbow, maps).stdout
 
 
 @pytest.fixture(scope="module")

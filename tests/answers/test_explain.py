@@ -116,9 +116,9 @@ def call(statement, parts, bound):
     return words + ([f"--bound={bound}"] if bound else [])
 
 
-def verdict_of(experience, statement, parts, bound):
+def verdict_of(experience, statement, parts, bound, axiom=True):
     """The verdict by all hypotheses of the independent search."""
-    final = Truth(experience).having(*parts, bound=bound)
+    final = Truth(experience, axiom).having(*parts, bound=bound)
     if not final:
         return "no map"
     if statement is None:
@@ -146,7 +146,7 @@ def demand_words(experience, answer):
         told = set(map(int, re.findall(r"\d+", words)))
         if kind in ("view", "schema", "unification", "twice", "planar"):
             assert set(numbers) <= told
-        if kind in ("twice", "crossed", "circular"):
+        if kind in ("twice", "crossed", "circular", "place_twice"):
             match = re.search(r"through places? ([\d ]+) \(steps? ([\d ]+)\)", words)
             places, steps = ([int(n) for n in group.split()] for group in match.groups())
             assert places == [at[step][0] for step in steps]
@@ -169,8 +169,10 @@ def demand_words(experience, answer):
             ahead = [(start, (p, (s + half) % experience.slots)) for start, (p, s) in walks]
             if kind == "circular":
                 assert any(start == on for start, on in ahead)
-            if kind == "crossed":
+            if kind in ("crossed", "place_twice"):
                 assert forks or any((start[1] - on[1]) % half for start, on in ahead)
+        if kind == "itself":
+            assert words.endswith(f" {'{}.{}'.format(*at[numbers[0]])}")
         if kind == "planar":
             match = re.search(r"cycle of steps? ([\d ]+), round by places? ([\d ]+), to", words)
             steps, places = ([int(n) for n in group.split()] for group in match.groups())
@@ -254,6 +256,47 @@ def test_verdicts_and_reasons(tmp_path, first, end, record_property):
     assert tried > (end - first) / 6
     assert kinds >= {"view", "unification", "schema"}
     record_property("explanations held against all assignments", tried)
+
+
+def least_cases():
+    """Of each reason that there is without the path axiom, or that then is of more, a case."""
+    loop = parse((ROOT / "tests/cases/loop.lp").read_text(), "loop")
+    back = parse("slots(4). view(0,0). view(0,1). turn(1,0). view(1,0). view(1,1).", "back")
+    yield "itself", back, "at(1,0,0)", []
+    yield "place_twice", loop, "same(0,1)", ["boundary"]
+
+
+@pytest.mark.parametrize("cases", [25, pytest.param(500, marks=pytest.mark.long)])
+def test_verdicts_without_the_path_axiom(tmp_path, cases, record_property):
+    """A way may come back to a place, but not to the gateway by which it was left."""
+    verdicts, tried, kinds = set(), 0, set()
+    hand = [(reason, seen, said, parts, None) for reason, seen, said, parts in least_cases()]
+    for number in range(cases):
+        draw = random.Random(f"without the path axiom {number}")
+        hand.append((None, *case(draw, draw.choice([3, 4, 4, 5]))))
+    for reason, experience, statement, parts, bound in hand:
+        words = call(statement, parts, bound)
+        status, answer = explained(tmp_path, experience, *words, "--no-path-axiom")
+        assert answer["demands"] == [*parts, "no_path_axiom"]
+        verdict = verdict_of(experience, statement, parts, bound, axiom=False)
+        assert (answer["verdict"], status) == (verdict, verdict in ("open", "map"))
+        verdicts.add(verdict)
+        if status or (answer["note"] and verdict != "no map"):
+            continue
+        cut = experience.cut(answer["horizon"])
+        demand_words(cut, answer)
+        names = [one["reason"] for one in answer["reasons"]]
+        found = {name.partition("(")[0] for name in names}
+        assert reason is None or reason in found
+        assert not found & {"twice", "crossed", "circular"}
+        kinds |= found
+        if number_of_assignments(cut) <= MOST and "sides" not in found:
+            demand_reasons(cut, answer, goal(answer, statement), bound)
+            tried += 1
+    assert verdicts >= {"no map", "open", "impossible"}
+    assert tried > cases / 4
+    assert kinds >= {"view", "itself", "place_twice"}
+    record_property("explanations without the path axiom", tried)
 
 
 CALLS = """

@@ -47,7 +47,7 @@ def agrees(status, experience, level):
     assert len(status.best) == len(wanted)
     if wanted:
         assert status.kind == kind
-        assert status.cost == Hypothesis(seen, next(iter(wanted))).cost()
+        assert status.cost == Hypothesis(seen, next(iter(wanted))).worth()
     same, new = certain(level)
     assert (status.certain.same, status.certain.new) == (same, new)
     for t, s, u, r in status.certain.linked:

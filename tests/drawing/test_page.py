@@ -12,6 +12,7 @@ import signal
 import subprocess
 import time
 from collections import Counter
+from html import unescape
 from html.parser import HTMLParser
 from itertools import combinations, product
 
@@ -575,6 +576,21 @@ def test_a_page_of_maps_that_are_given(tmp_path, capsys):
         told = capsys.readouterr().err
         assert (told.count("\n"), none.exists()) == (1, False)
         assert fault in told
+
+
+def test_each_map_names_what_it_breaks(tmp_path, capsys):
+    """The best map of the oxbow breaks what check --all says, and its exceptions are named."""
+    oxbow, out, maps = ROOT / "tests/cases/oxbow.lp", tmp_path / "page.html", tmp_path / "maps.json"
+    assert cli.main(["report", str(oxbow), "--planar", "-o", str(out)]) == 0
+    call = ["solve", str(oxbow), "--planar", "--optimal", "--json", "-o", str(maps)]
+    assert cli.main(call) == 0
+    assert cli.main(["check", "--all", str(oxbow), str(maps), "--json"]) == 0
+    (told,) = json.loads(capsys.readouterr().out)["maps"]
+    text = unescape(out.read_text())
+    assert (told["breaks"].keys(), len(told["exceptions"])) == ({"boundary", "perpendicular"}, 5)
+    keeps = ", ".join(told["keeps"])
+    assert f"it breaks {', '.join(told['breaks'])}; keeps {keeps}." in text
+    assert text.count("paths 2 and 6 meet twice, at places 1 and 3; place 3 is left") == 1
 
 
 def test_a_limit_leaves_a_page_that_says_so(tmp_path, capsys):

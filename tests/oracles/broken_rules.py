@@ -70,6 +70,10 @@ class Assignment:
         (out, end), (other, arrival) = self.ways[t - 1], self.ways[u - 1]
         return (end == other) != (out == arrival)
 
+    def itself(self, t):
+        out, end = self.ways[t - 1]
+        return out == end
+
     def runs(self):
         """Of each run the slots for which it heads at its visits."""
         runs = {}
@@ -147,6 +151,12 @@ class Assignment:
         both = {a, b} <= first
         return both and len(self.places_on(a) & self.places_on(b)) > 1
 
+    boundary = perpendicular
+
+    def place_twice(self, a):
+        axes = {axis for run in self.path(a) for axis in self.axes(run)}
+        return a == min(self.path(a)) and len(axes) > len({place for place, _ in axes})
+
     def triangle(self, a, b, c):
         first = {min(self.path(run)) for run in self.runs()}
         if not {a, b, c} <= first:
@@ -176,6 +186,7 @@ def reasons(experience):
     steps = range(experience.steps + 1)
     for t in steps:
         yield f"marker({t})"
+        yield from [f"itself({t})"] * bool(t)
         for u in steps[t + 1 :]:
             yield from (f"view({u},{t})", f"twice({t},{u})")
             yield from (f"same({t},{u})", f"apart({t},{u})")

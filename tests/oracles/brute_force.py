@@ -201,6 +201,10 @@ class Hypothesis:
     def cost(self):
         return len(self.paths()), len(self.stars)
 
+    def worth(self):
+        """What the best of the closed maps have the least of: exceptions, paths, places."""
+        return sum(self.exceptions()), *self.cost()
+
     def names(self):
         """The paths, each by the first step along it, or by its place and lower slot there, and
         the places: what circumscription compares (docs/circumscription.md)."""
@@ -375,11 +379,12 @@ def tree(experience, planar=False, bound=None, axiom=True):
 
 
 def best(experience, hypotheses, closed=True):
-    """The boundary-consistent ones with fewest paths, then fewest places."""
+    """Those with the fewest exceptions to consistent boundaries, then the fewest paths, then the
+    fewest places."""
     maps = [Hypothesis(experience, at) for at in hypotheses]
-    maps = [m for m in maps if m.boundary() and (m.closed() or not closed)]
-    least = min((m.cost() for m in maps), default=None)
-    return {m.at for m in maps if m.cost() == least}
+    worth = {m.at: m.worth() for m in maps if m.closed() or not closed}
+    least = min(worth.values(), default=None)
+    return {at for at, one in worth.items() if one == least}
 
 
 def circumscribed(maps):

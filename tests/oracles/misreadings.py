@@ -7,6 +7,7 @@ from dataclasses import replace
 
 from conftest import Truth
 from topomap.model.experience import Experience
+from topomap.model.vocabulary import OPTIMIZING
 
 from oracles.worlds import random_experience
 
@@ -67,9 +68,12 @@ def expected(ways, parts):
     """The hypotheses of each way with these parts, and what each costs."""
     every = {}
     for misread, truth in ways:
-        for at in truth.having(*(part for part in parts if part not in ("minimal", "genus"))):
+        for at in truth.having(*(part for part in parts if part not in OPTIMIZING)):
             h = truth.final[at]
             cost = (len({step for step, _ in misread}), len(misread))
-            cost += (h.genus(),) * ("genus" in parts) + h.cost() * ("minimal" in parts)
+            cost += (h.genus(),) * ("genus" in parts)
+            cost += (sum(h.exceptions()),) * ("exceptions" in parts) + h.cost() * (
+                "minimal" in parts
+            )
             every[at, misread] = cost
     return every

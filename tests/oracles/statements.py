@@ -33,6 +33,7 @@ FIGURES = {
     "links": lambda h: len(h.link) // 2,
     "pending": lambda h: len(h.pending()),
     "genus": Hypothesis.genus,
+    "exceptions": lambda h: sum(h.exceptions()),
 }
 PROPERTIES = {
     "planar": lambda h: h.genus() == 0,
@@ -40,6 +41,11 @@ PROPERTIES = {
     "travelled": Hypothesis.travelled,
     "boundary": Hypothesis.boundary,
     "perpendicular": Hypothesis.perpendicular,
+}
+QUALITIES = {
+    **PROPERTIES,
+    "circular": lambda h: any(h.opposite(gateway) in h.ray(gateway) for gateway in h.link),
+    "meets_twice": lambda h: h.exceptions()[0] > 0,
 }
 
 

@@ -14,7 +14,7 @@ from topomap.model.vocabulary import STATED as STATED_PARTS
 from topomap.solver.programs import FORMS
 
 FACTS = read(ROOT / "instances/grid-3x3-snake.lp").facts()
-ALL = (*PARTS, "bound", "minimal", "genus")
+ALL = (*PARTS, "bound", "minimal", "genus", "exceptions", "no_path_axiom")
 FURTHER = ("explore", "unseen", "bisimilar")  # of maps, and not parts of the theory
 STATED = [file for file in named_files(ENCODINGS) if statements(ENCODINGS, file)]
 in_every_form = pytest.mark.parametrize("form", FORMS)
@@ -24,7 +24,8 @@ def test_these_are_all_the_parts():
     names = {form: {path.stem for path in folder.glob("*.lp")} for form, folder in FORMS.items()}
     others = {"input", "check", "noise", "query", "explain", "circumscribe", "online", *FURTHER}
     assert names["work"] == {"topomap", *others, *ALL}
-    assert names["paper"] == {"topomap", "path_axiom", "bound", *STATED_PARTS}
+    included = {"path_axiom", "paths", "sides"}
+    assert names["paper"] == {"topomap", *included, "bound", *STATED_PARTS}
     assert {*DRIVER_PARTS, "bound"} == set(ALL)
 
 
@@ -88,7 +89,13 @@ AGGREGATES = {
     "explore/walk": ["1 >= { go(I,S): turns(S) }", "1 >= { drop(I): I = (0..(n-1)) }"],
     "bound": ["B < #count { P: new(P) }"],
     "input": ["M = #max { T: has_turn(T) }"],
-    "query": ["N = #count { S: has_axis(T,S) }", "N = #count { S: view(T,S) }"],
+    "query": [
+        "N = #count { S: has_axis(T,S) }",
+        "N = #count { S: view(T,S) }",
+        "I = #count { B: may_name(B), B < A }",
+        "N = #max { M: ask(number(exception,M)); M: ask(least(exception,M)); "
+        "M: ask(most(exception,M)) }",
+    ],
     "noise": [
         "noise >= { wrong(T): step(T) }",
         "{ misread(T,gateway(S)) }",

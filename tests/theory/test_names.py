@@ -10,7 +10,6 @@ from oracles.rule_mutation import closure, named_files, statements
 
 ROW = re.compile(r"^\| `(\w+)(?:\(([^)]*)\))?` \| (.+?) \| (.+?) \|$", re.MULTILINE)
 MARKER = {"drop", "pick", "marker"}  # their second arity names one of several markers
-RESERVED = {"straight"}
 MOST, BEYOND = 45, 55  # rules of the statement, and of what lies beyond it
 
 
@@ -76,10 +75,6 @@ def test_a_name_has_one_number_of_arguments():
     for name, number in predicates():
         numbers[name].add(number)
     assert {name: n for name, n in numbers.items() if len(n) > 1 and name not in MARKER} == {}
-
-
-def test_names_of_facts_to_come_are_free():
-    assert not RESERVED & {name for name, _ in predicates()}
 
 
 @pytest.mark.parametrize("file", named_files(ENCODINGS))

@@ -13,8 +13,8 @@ from topomap.documents.verdicts import Judged, verdicts
 from topomap.model.experience import Experience
 from topomap.model.query import Query
 from topomap.model.topology import TopologicalMap
-from topomap.model.vocabulary import PROPERTIES
-from topomap.runtime.checks import integer, shown
+from topomap.model.vocabulary import PROPERTIES, RELAXING
+from topomap.runtime.checks import flag, integer, shown
 from topomap.runtime.errors import InputError
 from topomap.runtime.watch import Attempt, Watch
 
@@ -29,6 +29,7 @@ def check(
     noise: int | None = None,
     truth: TopologicalMap | None = None,
     timeout: float | None = None,
+    every: bool = False,
     **parts: Unpack[Parts],
 ) -> Judged:
     """Judge maps by two checkers that share no rule with the theory (the paper, sections II, III);
@@ -45,7 +46,11 @@ def check(
         noise: how many views a map may disbelieve.
         truth: the real map, for maps that say whether they are it (the key ``real``).
         timeout: seconds after which no further map is begun.
-        parts: what the maps are to have; genus, minimal and euler are none that one map has.
+        every: tell of each map which axioms and defaults it breaks and keeps (``axioms`` of its
+            verdict), and its ``exceptions``. What is not demanded, nor said of the maps, is then
+            nothing wrong, the path axiom included.
+        parts: what the maps are to have; genus, exceptions, minimal and euler are none that one map
+            has. With no_path_axiom they need not keep the path axiom.
 
     Returns:
         The verdicts, in the order of the maps; ``unsound`` are those of maps with which something
@@ -57,13 +62,14 @@ def check(
         InputError: an experience that cannot be; a file that cannot be read; or what is to be
             judged is no map: one line, which says the how many-th.
     """
-    query = query_of(parts, bound=bound, noise=noise, allowed=PROPERTIES)
+    query = query_of(parts, bound=bound, noise=noise, allowed=(*PROPERTIES, *RELAXING))
+    every = flag("every", every)
     if truth is not None and not isinstance(truth, TopologicalMap):
         raise TypeError(f"truth: a TopologicalMap is wanted, not {shown(truth)}")
     documents = _documents(maps)
     demand_pairs(experience, "check")
     watch = begin(experience, timeout, noise is not None or read.noisy(documents))
-    return check_under(watch, experience, documents, query, truth)
+    return check_under(watch, experience, documents, query, truth, every)
 
 
 def check_under(
@@ -72,13 +78,14 @@ def check_under(
     documents: list[Document],
     query: Query,
     truth: TopologicalMap | None,
+    every: bool = False,
 ) -> Judged:
     """The same of documents that were read, under the watch of a command."""
-    demands = [part for part in PROPERTIES if part in query.parts]
+    demands = [part for part in (*PROPERTIES, *RELAXING) if part in query.parts]
     demands += [f"bound({query.places})"] if query.places else []
     judged = Judged(sum(len(one.maps) for one in documents), experience.steps, demands)
     with Attempt() as attempt:
-        for verdict in verdicts(experience, documents, demands, truth, query.noise):
+        for verdict in verdicts(experience, documents, demands, truth, query.noise, every):
             judged.verdicts.append(verdict)
             watch.found += 1
             if len(judged.verdicts) < judged.count:

@@ -10,7 +10,7 @@ from topomap.model.experience import Experience
 from topomap.model.found import Found
 from topomap.model.query import Query
 from topomap.model.reply import Reply
-from topomap.model.vocabulary import DEMANDS
+from topomap.model.vocabulary import DEMANDS, RELAXING
 from topomap.questions.explain import Explainer, Explanation, Reason
 from topomap.questions.statements import Statement, parse_statement
 from topomap.runtime.limits import LARGEST
@@ -117,7 +117,7 @@ def explain(
         InputError: an experience that cannot be, or a text that is no statement about it; one
             line.
     """
-    query = query_of(parts, bound=bound, horizon=horizon, allowed=DEMANDS)
+    query = query_of(parts, bound=bound, horizon=horizon, allowed=(*DEMANDS, *RELAXING))
     if statement is not None:
         demand_text("statement", statement, "same(3,12)")
     return explain_under(begin(experience, timeout), experience, statement, query)

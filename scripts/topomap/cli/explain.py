@@ -6,7 +6,7 @@ from typing import Any
 from topomap.cli.arguments import add_known, add_query, command
 from topomap.cli.calls import asked_query, experience_of
 from topomap.cli.tell import tell
-from topomap.model.vocabulary import DEMANDS, VOCABULARY
+from topomap.model.vocabulary import DEMANDS, RELAXING, VOCABULARY
 from topomap.runtime.files import output
 
 
@@ -25,7 +25,7 @@ def add(group: Any) -> None:
     made.add_argument("instance", metavar="INSTANCE")
     made.add_argument("statement", nargs="?", metavar="STATEMENT")
     add_known(made)
-    add_query(made, DEMANDS)
+    add_query(made, (*DEMANDS, *RELAXING))
 
 
 def run(args: argparse.Namespace) -> int:

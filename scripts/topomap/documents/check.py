@@ -2,6 +2,7 @@
 with networkx. Neither shares anything with what makes the maps.
 """
 
+from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from itertools import combinations
 from typing import Any
@@ -15,9 +16,11 @@ from topomap.runtime.folders import ENCODINGS
 
 At = Sequence[tuple[int, int, int]]  # at(T,P,S)
 Violation = tuple[str, int]
-PATH_RULES = {"path_twice", "path_circular"}
+PATH_RULES = ("path_twice", "path_circular")
+NO_PATH_AXIOM = "no_path_axiom"  # a demand by which a map need not keep them
+LATE = ("closed", "travelled", "perpendicular")  # no step before the last one tells
 STEP_RULES = {
-    *("exactly_one", "naming", "gateway", "view", "landmark", "marker", "schema"),
+    *("exactly_one", "naming", "gateway", "view", "landmark", "marker", "schema", "itself"),
     *("compass", "odometry", "length", "same", "apart", "look"),
 }
 
@@ -25,7 +28,8 @@ STEP_RULES = {
 def by_rules(experience: Experience, at: At, demands: Sequence[str] = ()) -> set[Violation]:
     """What ``check.lp`` finds: rules, and the steps after which they are broken.
 
-    ``demands`` are terms: planar, bound(B), closed, travelled, boundary, perpendicular.
+    ``demands`` are terms: planar, bound(B), closed, travelled, boundary, perpendicular; and
+    no_path_axiom, by which less is demanded.
     """
     control = clingo.Control(experience.constants())
     control.load(str(ENCODINGS / "check.lp"))
@@ -77,16 +81,18 @@ def by_definition(experience: Experience, at: At, demands: Sequence[str] = ()) -
     for step, out, arrival in _ways(experience, stands):
         ends.setdefault(out, set()).add(arrival)
         ends.setdefault(arrival, set()).add(out)
-        if out == arrival or max(len(ends[out]), len(ends[arrival])) > 1:
+        if out == arrival:
+            found.add(("itself", step))
+        if max(len(ends[out]), len(ends[arrival])) > 1:
             found.add(("schema", step))
     whole = Grown(experience, stands, last)
-    for rule in ("path_twice", "path_circular", *demands):
+    wanted = [demand for demand in demands if demand != NO_PATH_AXIOM]
+    for rule in wanted if NO_PATH_AXIOM in demands else (*PATH_RULES, *wanted):
         name, _, number = rule.rstrip(")").partition("(")
         broken, limit = BROKEN[name], int(number or 0)
-        axiom = not PATH_RULES & {rule for rule, _ in found}
-        if not (axiom or name not in ("boundary", "perpendicular")) or not broken(whole, limit):
+        if not broken(whole, limit):
             continue
-        step = 0 if name not in ("closed", "travelled") else last
+        step = last if name in LATE else 0
         while not broken(Grown(experience, stands, step), limit):
             step += 1
         found.add((rule, step))
@@ -150,8 +156,9 @@ def _ways(
 class Grown:
     """The map that the steps up to ``step`` make.
 
-    ``links``: the gateway at the other end of a link. ``ahead``: from each gateway, those
-    at which one arrives who leaves by it and walks straight on, in their order.
+    ``links``: the gateway at the other end of a link. ``first``: the first step through a gateway.
+    ``ahead``: from each gateway, those at which one arrives who leaves by it and walks straight on,
+    in their order.
     """
 
     def __init__(self, experience: Experience, stands: dict[int, Gateway], step: int):
@@ -160,8 +167,11 @@ class Grown:
         self.stars = {place: sorted(experience.views[place]) for place in places}
         self.dstate = stands.get(step)
         self.links: dict[Gateway, Gateway] = {}
+        self.first: dict[Gateway, int] = {}
         for t, out, arrival in _ways(experience, stands):
             if t <= step:
+                self.first.setdefault(out, t)
+                self.first.setdefault(arrival, t)
                 self.links.setdefault(out, arrival)
                 self.links.setdefault(arrival, out)
         walks: nx.DiGraph[Gateway] = nx.DiGraph()
@@ -257,28 +267,39 @@ class Grown:
     def over(self, bound: int) -> bool:
         return len(self.stars) > bound
 
-    def one_sided(self, heading: Gateway) -> tuple[set[int], set[int], set[int]]:
-        """Of the path with this heading: its places, and those at its right and left."""
-        back = self.ahead.get(self.opposite(heading), [])
-        forth = self.ahead.get(heading, [])
-        headings = [heading, *back, *map(self.opposite, forth)]
-        beside: tuple[set[int], set[int]] = set(), set()
-        for place, slot in headings:
+    def beside(self, path: list[Gateway]) -> tuple[set[int], set[int]]:
+        """The places at the right and left of a path."""
+        sides: tuple[set[int], set[int]] = set(), set()
+        for place, slot in path:
             for other in self.stars[place]:
                 turn = (other - slot) % self.slots
                 if turn % self.half:
                     met = {place for place, _ in self.ahead.get((place, other), [])}
-                    beside[turn > self.half].update(met)
-        return {place for place, _ in headings}, *beside
+                    sides[turn > self.half].update(met)
+        return sides
 
-    def two_sided(self, _: int) -> bool:
-        """Whether a place is left and right of a path, or on it and beside it."""
-        for place, star in self.stars.items():
-            for slot in star:
-                on, right, left = self.one_sided((place, slot))
-                if right & left or on & (right | left):
-                    return True
-        return False
+    def across(self, gateway: Gateway) -> frozenset[Gateway]:
+        """A gateway and the one straight across."""
+        return frozenset((gateway, self.opposite(gateway)))
+
+    def name(self, path: list[Gateway]) -> int | frozenset[Gateway]:
+        """The first step along a path; of one that no step travels, its gateways."""
+        ends = {end for heading in path for end in self.across(heading)}
+        steps = [self.first[end] for end in ends if end in self.first]
+        return min(steps) if steps else self.across(path[0])
+
+    def exceptions(self) -> Iterator[tuple[str, list[list[Gateway]], set[int]]]:
+        """Its exceptions to consistent boundaries: of what kind each is, of which paths, and at
+        which places."""
+        paths = [(path, Counter(place for place, _ in path)) for path in self.paths()]
+        for (path, places), (another, others) in combinations(paths, 2):
+            if len(shared := places.keys() & others.keys()) > 1:
+                yield "meet twice", [path, another], shared
+        for path, places in paths:
+            if again := {place for place, times in places.items() if times > 1}:
+                yield "place twice", [path], again
+            for place in set.intersection(*self.beside(path)):
+                yield "both sides", [path], {place}
 
     def slanted(self, _: int) -> bool:
         """Whether two paths share two places, or three meet pairwise at three."""
@@ -298,6 +319,6 @@ BROKEN: dict[str, Callable[[Grown, int], bool]] = {
     "bound": Grown.over,
     "closed": lambda grown, _: bool(grown.pending()),
     "travelled": Grown.untravelled,
-    "boundary": Grown.two_sided,
+    "boundary": lambda grown, _: any(grown.exceptions()),
     "perpendicular": Grown.slanted,
 }

@@ -17,7 +17,7 @@ from topomap.documents.check import STEP_RULES, by_definition
 from topomap.model.experience import DState, Experience, Misread
 from topomap.model.found import BEST, UNPROVED
 from topomap.model.topology import TopologicalMap
-from topomap.model.vocabulary import PARTS, PROPERTIES
+from topomap.model.vocabulary import PARTS, PROPERTIES, RELAXING
 from topomap.runtime import files, formats
 from topomap.runtime.errors import InputError
 from topomap.runtime.files import read_text
@@ -65,16 +65,15 @@ class Document:
         return [one for one in enumerate(self.maps, 1) if one[0] - 1 not in self.worse]
 
     def demands(self) -> Iterator[str]:
-        """What the maps are said to have, as terms of ``check.lp``."""
+        """What the maps are said to have, or with no_path_axiom need not have, as terms of
+        ``check.lp``."""
         for part in self.claims.get("parts", ()):
             if part == "euler":
                 yield "planar"
-            elif part in PROPERTIES:
+            elif part in (*PROPERTIES, *RELAXING):
                 yield part
         if self.claims.get("bound") is not None:
             yield f"bound({self.claims['bound']})"
-        if self.claims.get("optimal"):
-            yield "boundary"
         if self.claims.get("kind") in ("optimal", BEST_FIRST):
             yield "closed"
 

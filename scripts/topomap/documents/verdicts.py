@@ -1,10 +1,20 @@
 """What is wrong with maps, by two checkers, and whether they are what is said of them."""
 
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import asdict, dataclass, field
+from collections import Counter
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass, field
 from typing import Any
 
-from topomap.documents.check import STEP_RULES, At, Grown, Violation, by_definition, by_rules
+from topomap.documents.check import (
+    NO_PATH_AXIOM,
+    PATH_RULES,
+    STEP_RULES,
+    At,
+    Grown,
+    Violation,
+    by_definition,
+    by_rules,
+)
 from topomap.documents.maps import (
     BEST_FIRST,
     LONGER,
@@ -14,24 +24,114 @@ from topomap.documents.maps import (
     misread_of,
 )
 from topomap.model import words
-from topomap.model.experience import Experience, Misread
+from topomap.model.exceptions import NamedException, exceptions_of
+from topomap.model.experience import DState, Experience, Misread
+from topomap.model.found import BEST
 from topomap.model.reply import Reply
 from topomap.model.topology import Gateway, TopologicalMap
+from topomap.model.vocabulary import PROPERTIES
 from topomap.runtime.errors import InputError
+
+PATH_AXIOM = "path axiom"
+RULES_OF = {PATH_AXIOM: PATH_RULES, **{part: (part,) for part in PROPERTIES}}  # that tell of each
+
+
+@dataclass(frozen=True)
+class Axioms:
+    """Which of the axioms and defaults of the theory a map ``breaks``, each with the violations
+    that say so; its genus, and how many gateways are pending."""
+
+    breaks: dict[str, list[Violation]]
+    genus: int
+    pending: int
+
+    @property
+    def keeps(self) -> list[str]:
+        """Those that the map does not break."""
+        return [one for one in RULES_OF if one not in self.breaks]
+
+    @property
+    def words(self) -> str:
+        """Both in words, such as "breaks closed (3 pending); keeps path axiom, planar"."""
+        details = {"planar": f" (genus {self.genus})", "closed": f" ({self.pending} pending)"}
+        told = ", ".join(f"{r} after step {step}" for r, step in self.breaks.get(PATH_AXIOM, ()))
+        details[PATH_AXIOM] = f" ({told})"
+        broken = ", ".join(f"{name}{details.get(name, '')}" for name in self.breaks)
+        return f"breaks {broken or 'none'}; keeps {', '.join(self.keeps) or 'none'}"
+
+    def document(self) -> dict[str, Any]:
+        """The same as JSON."""
+        return {
+            "breaks": self.breaks,
+            "keeps": self.keeps,
+            "genus": self.genus,
+            "pending": self.pending,
+        }
+
+
+def axioms(grown: Grown, violations: Iterable[Violation]) -> Axioms:
+    """Which axioms and defaults a map breaks, by all the violations that there are if each part is
+    demanded of it."""
+    found = [*violations]
+    broken = {
+        name: _by_step(one for one in found if one[0] in some) for name, some in RULES_OF.items()
+    }
+    breaks = {name: each for name, each in broken.items() if each}
+    return Axioms(breaks, grown.genus(), len(grown.pending()))
+
+
+def axioms_of(experience: Experience, at: Sequence[DState]) -> Axioms:
+    """Which axioms and defaults a map breaks by definition, of a hypothesis given by its dstate
+    after each step."""
+    steps = [(step, *dstate) for step, dstate in enumerate(at)]
+    grown = Grown(experience, dict(enumerate(at)), len(steps) - 1)
+    return axioms(grown, by_definition(experience, steps, PROPERTIES))
 
 
 @dataclass(frozen=True)
 class Verdict:
-    """What is wrong with a map: rules broken, with steps, and other faults in words."""
+    """What is wrong with a map: rules broken, with steps, and other faults in words. Of a map whose
+    steps break no rule it can be told which ``axioms`` and defaults it breaks, and its
+    ``exceptions`` to consistent boundaries; None: it is not told."""
 
     where: str
     violations: list[Violation]
     faults: list[str]
     short: bool = False  # the map is of part of the steps
+    axioms: Axioms | None = None
+    exceptions: list[NamedException] | None = None
 
     @property
     def sound(self) -> bool:
         return not self.violations and not self.faults
+
+    def document(self) -> dict[str, Any]:
+        """What is wrong, as JSON."""
+        keys = ("where", "violations", "faults", "short")
+        return {key: getattr(self, key) for key in keys}
+
+    def told(self) -> dict[str, Any]:
+        """What is told of the map besides, as JSON."""
+        told: dict[str, Any] = {
+            "where": self.where,
+            **(self.axioms.document() if self.axioms else {}),
+        }
+        if self.exceptions is not None:
+            told["exceptions"] = [one.document() for one in self.exceptions]
+        return told
+
+    def lines(self) -> Iterator[str]:
+        """What is wrong, and what is told besides, to read."""
+        if not self.sound:
+            broken = [f"violation({rule},{step})" for rule, step in self.violations]
+            yield f"{self.where}: {'; '.join(broken + self.faults)}"
+        if self.axioms:
+            yield f"{self.where}: {self.axioms.words}"
+        if self.exceptions:
+            many = words.number(len(self.exceptions), "exception")
+            yield f"{self.where}: {many} to consistent boundaries"
+            for one in self.exceptions:
+                yield f"  {one.words}"
 
 
 @dataclass(repr=False)
@@ -62,16 +162,16 @@ class Judged(Reply):
     def document(self) -> dict[str, Any]:
         return {
             "demands": self.demands,
-            "unsound": [asdict(verdict) for verdict in self.unsound],
+            "unsound": [verdict.document() for verdict in self.unsound],
+            "maps": [one.told() for one in self.verdicts if one.exceptions is not None],
             "checked": len(self.verdicts),
             "short": self.short,
             "count": self.count,
         }
 
     def lines(self) -> Iterator[str]:
-        for verdict in self.unsound:
-            broken = [f"violation({rule},{step})" for rule, step in verdict.violations]
-            yield f"{verdict.where}: {'; '.join(broken + verdict.faults)}"
+        for verdict in self.verdicts:
+            yield from verdict.lines()
         many = words.number(self.count, "map").replace(",", "")
         line = f"{len(self.verdicts)} of {many} checked" if self.fault else many
         line += f", {len(self.unsound) or 'none'}{' of these' * bool(self.fault)} unsound"
@@ -86,9 +186,12 @@ def verdicts(
     demands: Sequence[str],
     truth: TopologicalMap | None,
     noise: int | None = None,
+    every: bool = False,
 ) -> Iterator[Verdict]:
     """A verdict on each map, by ``check.lp`` and by definition, of what was seen but for what
     the map says was misread: after ``noise`` steps at most, and as many as its document allows.
+    With ``every`` it tells of each axiom and default whether the map breaks it; that it does is no
+    violation then, unless it is among the ``demands``, or the document says that it does not.
     Raises InputError if one is much longer than the experience."""
     for document in documents:
         for number, entry in enumerate(document.maps, 1):
@@ -96,7 +199,12 @@ def verdicts(
                 fault = f"at has {len(entry['at'])} dstates, the instance {seen.steps + 1}"
                 raise InputError(f"{document.where}: map {number}: {fault}")
     for document in documents:
-        wanted = sorted({*demands, *document.demands()})
+        wanted = {*demands, *document.demands()}
+        if every and "parts" not in document.claims:
+            wanted.add(NO_PATH_AXIOM)
+        asked = {*wanted, *PROPERTIES} - {NO_PATH_AXIOM} if every else wanted
+        kept = {*STEP_RULES, *wanted, *(() if NO_PATH_AXIOM in wanted else PATH_RULES)}
+        named = every or "boundary" in wanted or document.claims.get("kind") in BEST
         numbers: dict[tuple[At, frozenset[Misread]], int] = {}
         bounds = [k for k in (noise, document.claims.get("noise")) if k is not None]
         for number, entry in enumerate(document.maps, 1):
@@ -111,26 +219,39 @@ def verdicts(
             except (LookupError, TypeError, ValueError):
                 misread, found = frozenset(), ["misread: not what topomap solve --json writes"]
             if not found:
-                rules = by_rules(experience, at, wanted)
-                definition = by_definition(experience, at, wanted)
+                rules = by_rules(experience, at, sorted(asked))
+                definition = by_definition(experience, at, sorted(asked))
+            told = exceptions = None
             if not found and not STEP_RULES & {rule for rule, _ in rules | definition}:
                 found = list(faults(experience, document, entry, at))
                 if rules != definition:
                     found.append("check.lp and the check by definition do not agree on it")
+                whole = Grown(experience, {t: (p, s) for t, p, s in at}, len(at) - 1)
+                if named:
+                    exceptions = exceptions_of(experience, [(p, s) for _, p, s in at])
+                    plain = [one.document() for one in exceptions]
+                    if not _exceptions(whole, experience, plain):
+                        found.append("the exceptions are not those by definition")
+                told = axioms(whole, rules | definition) if every else None
                 if truth and "real" in entry:
                     real = experience.map_of(tuple((p, s) for _, p, s in at)).isomorphic(truth)
                     if real != entry["real"]:
                         found.append(f"real: it is {'not ' * (not real)}the real map")
             if numbers.setdefault((at, misread), number) != number:
                 found.append(f"the same as map {numbers[at, misread]}")
-            violations = sorted(rules | definition, key=lambda violation: violation[::-1])
+            violations = _by_step(one for one in rules | definition if one[0] in kept)
             said = document.claims.get("count", len(document.maps))
             if number == 1 and said != len(document.maps):
                 found.append(f"count is {said}, there are {len(document.maps)} maps")
             if truth is None and "real" in entry:
                 found.append("real: only --truth can tell")
             short = len(at) <= seen.steps
-            yield Verdict(f"{document.where}: map {number}", violations, found, short)
+            where = f"{document.where}: map {number}"
+            yield Verdict(where, violations, found, short, told, exceptions)
+
+
+def _by_step(violations: Iterable[Violation]) -> list[Violation]:
+    return sorted(violations, key=lambda violation: violation[::-1])
 
 
 def _mistaken(
@@ -188,9 +309,11 @@ def _noise(entry: dict[str, Any], claims: dict[str, Any]) -> list[int]:
 def _cost(grown: Grown, claims: dict[str, Any]) -> list[int]:
     """What was minimised, most important first."""
     parts = claims.get("parts", ())
-    minimal = "minimal" in parts or claims.get("optimal") or claims.get("kind") == BEST_FIRST
-    genus = [grown.genus()] if "genus" in parts else []
-    return genus + ([len(grown.paths()), len(grown.stars)] if minimal else [])
+    optimal = claims.get("optimal", False)
+    minimal = "minimal" in parts or optimal or claims.get("kind") == BEST_FIRST
+    cost = [grown.genus()] if "genus" in parts else []
+    cost += [sum(1 for _ in grown.exceptions())] if "exceptions" in parts or optimal else []
+    return cost + ([len(grown.paths()), len(grown.stars)] if minimal else [])
 
 
 def _places(grown: Grown, experience: Experience, said: Any) -> bool:
@@ -227,6 +350,27 @@ def _faces(grown: Grown, _: Experience, said: Any) -> bool:
     return sorted(from_least(_gateways(face)) for face in list_of(said)) == ours
 
 
+def _exceptions(grown: Grown, _: Experience, said: Any) -> bool:
+    def named(name: Any) -> Any:
+        """A step; or, of a path that is not travelled, its gateway and the one opposite."""
+        if is_number(name):
+            return name
+        place, slot = name.split(".")
+        return grown.across((int(place), int(slot)))
+
+    def plain(one: Any) -> Any:
+        """An exception, of numbers and texts only."""
+        if one.keys() != {"kind", "paths", "places"} or not all(map(is_number, one["places"])):
+            raise ValueError
+        return one["kind"], frozenset(map(named, one["paths"])), frozenset(one["places"])
+
+    theirs = Counter(map(plain, list_of(said)))
+    return theirs == Counter(
+        (kind, frozenset(map(grown.name, paths)), frozenset(places))
+        for kind, paths, places in grown.exceptions()
+    )
+
+
 def _gateways(said: Any) -> list[Gateway]:
     return [_gateway(gateway) for gateway in list_of(said)]
 
@@ -244,6 +388,7 @@ KEYS: dict[str, Callable[[Grown, Experience, Any], bool]] = {
     "paths": _paths,
     "faces": _faces,
     "genus": lambda grown, _, said: is_number(said) and grown.genus() == said,
+    "exceptions": _exceptions,
     "pending": lambda grown, _, said: sorted(_gateways(said)) == sorted(grown.pending()),
     "dstate": lambda grown, _, said: _gateway(said) == grown.dstate,
 }

@@ -19,8 +19,15 @@ PRUNING = ("planar", "perpendicular")  # what has them has had them after each s
 DEMANDS = tuple(part for part in PARTS if part not in (*OPTIMIZING, *RELAXING))
 PROPERTIES = tuple(part for part in DEMANDS if part != "euler")  # which is another rule for planar
 FORMS = ("work", "paper")  # of the encoding: the one that does the work, and the statement
-BEYOND = {"exceptions", "no_path_axiom"}  # the parts of encodings/paper/beyond/
-STATED = {"planar", "closed", "travelled", "boundary", "perpendicular", "minimal"} | BEYOND
+STATED = {"planar", "closed", "travelled", "boundary", "perpendicular", "minimal"}  # its parts
+BEYOND = {  # the files of those that go with the statement, beyond the paper
+    "exceptions": "beyond/exceptions",
+    "no_path_axiom": "../no_path_axiom",
+}
+
+# What a statement can say of the whole map: that it has what a part demands, that some path is
+# circular, or that two paths share two places or more.
+QUALITIES = (*PROPERTIES, "circular", "meets_twice")
 
 # What each argument is: a step, or a slot counted clockwise of where the agent stood after
 # the step before it.
@@ -37,6 +44,7 @@ FIGURES = {  # as query.lp has them
     "links": "link",
     "pending": "pending",
     "genus": "genus",
+    "exceptions": "exception",
 }
 VOCABULARY = """\
 statements; T and U are steps; S and R are slots, counted clockwise from the gateway where the
@@ -47,8 +55,11 @@ agent stood after the step:
   path(T,S,U,R)     one path leads through these two gateways
   pending(T,S)      that gateway has no link
   at(T,P,S)         after T it is at gateway S of place P, as in the maps of solve
-  places < 12       the number of places, paths, links or pending gateways (pending),
-                    or the genus, is compared by one of < <= = != >= >
+  places < 12       the number of places, paths, links, pending gateways (pending) or
+                    exceptions to consistent boundaries (exceptions), or the genus, is
+                    compared by one of < <= = != >= >
   planar, closed, travelled, boundary, perpendicular
                     the map fulfils what the part of this name demands
+  circular          some path is circular, which takes --no-path-axiom
+  meets_twice       some two paths share two places or more
   not STATEMENT     the statement does not hold"""

@@ -12,11 +12,13 @@ from typing import Any
 
 import clingo
 
+from topomap.documents.verdicts import axioms_of
 from topomap.drawing import svg
 from topomap.drawing.agreement import Agreement
 from topomap.drawing.scenes import Scene
 from topomap.drawing.shapes import Drawing
 from topomap.model import words
+from topomap.model.exceptions import exceptions_of
 from topomap.model.experience import Experience
 from topomap.model.found import Cube
 from topomap.model.query import Query
@@ -131,7 +133,8 @@ def _about(asked: Asked, number: int, about: Chapter) -> dict[str, Any]:
     name = f"Hypotheses after each step of {stem}, on a logarithmic scale"
     agreed = Agreement([scene.at for scene in about.best], seen)
     drawn = [
-        _map(scene, about.shapes.get(tuple(scene.at)), agreed) for scene in about.best[: asked.most]
+        _map(seen, scene, about.shapes.get(tuple(scene.at)), agreed)
+        for scene in about.best[: asked.most]
     ]
     file = about.name
     solve = shlex.join(["topomap", "solve", file, "--optimal", *asked.options()])
@@ -260,7 +263,9 @@ def _sizes(scene: Scene) -> str:
     return scene.title.splitlines()[1]
 
 
-def _map(scene: Scene, drawn: Drawing | None, agreed: Agreement) -> dict[str, Any]:
+def _map(
+    seen: Experience, scene: Scene, drawn: Drawing | None, agreed: Agreement
+) -> dict[str, Any]:
     """One of the best maps."""
     from markupsafe import Markup
 
@@ -289,6 +294,8 @@ def _map(scene: Scene, drawn: Drawing | None, agreed: Agreement) -> dict[str, An
         "number": number,
         "picture": Markup(picture),
         "sizes": _sizes(scene),
+        "axioms": axioms_of(seen, scene.at).words,
+        "exceptions": [one.words for one in exceptions_of(seen, scene.at)],
         "numbered": bool(drawn and drawn.faces),
         "links": [
             (gid(out), gid(end), words.listed(along), having) for out, end, along, having in links

@@ -33,9 +33,10 @@ WORDS = {
 FINAL = {
     "closed": ("travelled",),
     "closed_text": ("closed",),
-    "optimal": ("closed", "boundary", "minimal"),
+    "optimal": ("closed", "boundary", "minimal"),  # where a closed map has no exception
     "perpendicular": ("closed", "perpendicular"),
 }
+EXCEPTIONAL = ("closed", "exceptions", "minimal")  # what is optimal where each has some
 
 
 def tree(
@@ -113,7 +114,13 @@ def tree(
     )
     for key in asked:
         watch.title(f"{key} maps")
-        result[key] = sum(total for total, _ in islice(pairs, len(cubes_of[key])))
+        number = sum(total for total, _ in islice(pairs, len(cubes_of[key])))
+        if key == "optimal" and not number and result["closed_text"]:
+            continue  # each closed map has exceptions
+        result[key] = number
+    if result["optimal"] is None:
+        watch.title("optimal maps")
+        ((result["optimal"], _),) = counted([(query.having(*EXCEPTIONAL), (), False)])
     if circumscribe:
         watch.title("circumscribed maps")
         kind, many = None, 0
@@ -141,7 +148,7 @@ def _counted(experience: Experience, unit: Unit, watch: Watch | None) -> tuple[i
 @dataclass
 class Tally:
     """The same figures, of nodes that a search passes: add each, and merge the tallies of
-    branches of the tree. ``cost`` is that of the optimal maps so far."""
+    branches of the tree. ``cost`` is that of the optimal maps so far: exceptions, paths, places."""
 
     steps: int
     per_step: list[int] = field(default_factory=list)
@@ -165,8 +172,8 @@ class Tally:
         if node.closed():
             self.closed_text += 1
             self.perpendicular += node.square()
-            if self.cost is None or node.cost <= self.cost:
-                self._best(node.cost, node.map.boundaries_consistent())
+            if self.cost is None or (0, *node.cost) <= self.cost:
+                self._best((sum(1 for _ in node.map.exceptions()), *node.cost), 1)
 
     def merge(self, other: "Tally") -> None:
         """Count what another tally has counted."""
@@ -180,7 +187,7 @@ class Tally:
 
     def _best(self, cost: tuple[int, ...], number: int) -> None:
         """Take in so many optimal maps."""
-        if number and (self.cost is None or cost <= self.cost):
+        if self.cost is None or cost <= self.cost:
             self.optimal = number + (self.optimal if cost == self.cost else 0)
             self.cost = cost
 

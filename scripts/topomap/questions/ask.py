@@ -19,6 +19,7 @@ from topomap.model.query import Query
 from topomap.questions.statements import Statement
 from topomap.runtime.watch import Watch
 from topomap.solver.programs import Program, calls
+from topomap.solver.solving import preferences
 
 BUDGETS = ("1000", "30000", "umax")  # conflicts: what is hard to settle holds up nothing else
 Literal = tuple[str, bool]  # a term of a statement, and whether it holds
@@ -68,7 +69,7 @@ class Inquiry:
             self._settle(experience, query, query.kind, watch)
             return
         for closed, kind in ((("closed",), "optimal"), ((), "best so far")):
-            for preferred, before in (("boundary", (0,)), ("exceptions", ())):
+            for preferred, before in preferences(query):
                 asked = query.having(*closed, preferred, "minimal")
                 self.some, self.kind = None, None  # that there is none of a kind does not settle it
                 self._settle(experience, asked, kind, watch)

@@ -2,6 +2,7 @@
 and verified by a map that breaks each."""
 
 import random
+import re
 from collections.abc import Sequence
 from typing import Any
 
@@ -141,8 +142,7 @@ def kind_of(name: str) -> str:
 
 
 def numbers_of(name: str) -> tuple[int, ...]:
-    inside = name.partition("(")[2].rstrip(")")
-    return tuple(map(int, inside.split(","))) if inside else ()
+    return tuple(map(int, re.findall(r"\d+", name)))
 
 
 def rank(name: str) -> tuple[int, tuple[int, ...]]:

@@ -19,7 +19,7 @@ from topomap.model import words
 from topomap.model.experience import DState, Experience
 from topomap.model.found import Found, steps_json
 from topomap.model.query import Query
-from topomap.model.vocabulary import DEMANDS
+from topomap.model.vocabulary import DEMANDS, RELAXING
 from topomap.questions.cores import dstates, find_reasons, kind_of, numbers_of, verify
 from topomap.questions.reasons import (
     KNOWN,
@@ -153,7 +153,7 @@ class Explanation:
         return {
             "statement": statement and statement.text,
             "note": statement and statement.note,
-            "demands": [part for part in DEMANDS if part in query.parts],
+            "demands": [part for part in (*DEMANDS, *RELAXING) if part in query.parts],
             "bound": query.places,
             "verdict": verdict,
             "horizon": self.horizon,

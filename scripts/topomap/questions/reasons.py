@@ -28,6 +28,7 @@ RULES = {
     "assumed": "taken for granted",
     "unification": "gateway unification",
     "schema": "schema",
+    "itself": "schema",
     "twice": "path axiom",
     "crossed": "path axiom",
     "circular": "path axiom",
@@ -35,6 +36,7 @@ RULES = {
     "planar": "planarity",
     "euler": "planarity",
     "boundary": "boundary",
+    "place_twice": "boundary",
     "sides": "boundary",
     "perpendicular": "perpendicularity",
     "triangle": "perpendicularity",
@@ -152,6 +154,16 @@ class Broken:
                 return min(walks, key=len)
         return None
 
+    def crossed_by_itself(self, a: int) -> list[int] | None:
+        """A shortest walk along the path of a run, from a place to where it crosses it."""
+        path, waiting = {a}, [a]
+        for run in waiting:
+            met = {other for step in self.runs[run] for other, _ in self.touching((run, step))}
+            waiting += sorted(met - path)
+            path |= met
+        walks = [walk for one in path for other in path if (walk := self.crossed(one, other))]
+        return min(walks, key=len, default=None)
+
     def round(self, a: int) -> list[int] | None:
         """A shortest walk round the circular path of a run."""
         walks = []
@@ -197,8 +209,13 @@ class Broken:
             return told_views(self.experience, arguments, self.at)
         if kind in ("schema", "unification"):
             return self._links(kind, *arguments)
-        if kind in ("twice", "crossed", "circular"):
+        if kind in ("twice", "crossed", "circular", "place_twice"):
             return self._path(kind, arguments)
+        if kind == "itself":
+            step = arguments[0]
+            gateway = gid(self.at[step])
+            words = f"step {step} would arrive at the gateway by which it left, {gateway}"
+            return Told(words, (step,))
         if kind in KNOWN:
             return told_known(self.experience, kind, arguments, self.at)
         if kind == "assumed":
@@ -225,9 +242,10 @@ class Broken:
         if kind == "marker":
             return told_marker(self.experience, arguments[0], self.at)
         if kind == "sides":
-            run, place = arguments
-            words = f"place {place} would be both right and left of the path of step {run}"
-            return Told(words, (run, place))
+            *path, place = arguments
+            named = "of step {}" if len(path) == 1 else "through slot {1} of place {0}"
+            words = f"place {place} would be both right and left of the path {named.format(*path)}"
+            return Told(words, (path[0], place))
         meets = [_named("place", sorted({p for a, b, p in common if {a, b} == {c, d}}))
                  for c, d in _pairs(arguments)]  # fmt: skip
         paths = _named("step", arguments)
@@ -263,10 +281,15 @@ class Broken:
         return Told(words, (first, second))
 
     def _path(self, kind: str, arguments: Sequence[int]) -> Told:
+        walk: list[int] | None
         if kind == "twice":
-            walk: list[int] | None = list(range(arguments[0], arguments[1] + 1))
+            walk = list(range(arguments[0], arguments[1] + 1))
+        elif kind == "crossed":
+            walk = self.crossed(*arguments)
+        elif kind == "place_twice":
+            walk = self.crossed_by_itself(arguments[0])
         else:
-            walk = self.crossed(*arguments) if kind == "crossed" else self.round(arguments[0])
+            walk = self.round(arguments[0])
         if not walk:
             return told_plainly(kind, arguments)
         places = [self.place(step) for step in walk]
@@ -274,6 +297,8 @@ class Broken:
             end = "be circular"
         elif kind == "twice":
             end = f"hold place {places[0]} twice, after steps {walk[0]} and {walk[-1]}"
+        elif kind == "place_twice":
+            end = f"hold place {places[0]} twice"
         else:
             end = f"cross itself at place {places[0]}"
         words = f"the path through {_named('place', places)} ({_named('step', walk)}) would {end}"
@@ -286,6 +311,8 @@ def told_plainly(kind: str, arguments: Sequence[int]) -> Told:
     words = {
         "unification": f"{steps} go by one link, there and back",
         "schema": f"{steps} go by one link",
+        "itself": f"{steps} does not arrive at the gateway by which it left",
+        "place_twice": f"the path of {steps} holds no place twice",
         "twice": f"{steps} end at different places, as they are on one path",
         "crossed": f"the path of {steps} does not cross itself",
         "circular": f"the path of {steps} is not circular",

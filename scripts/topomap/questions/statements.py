@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from topomap.model.vocabulary import FIGURES, PROPERTIES, RELATIONS
+from topomap.model.vocabulary import FIGURES, QUALITIES, RELATIONS
 from topomap.model.words import number, short
 from topomap.runtime.errors import InputError
 from topomap.runtime.limits import LARGEST
@@ -64,7 +64,7 @@ def _parsed(text: str, experience: "Experience") -> Statement:
         return Statement(said, term, positive == agrees)
     if not _WORD.fullmatch(rest):
         raise ValueError("not a statement, such as same(3,12), places < 12, planar, not planar")
-    if rest not in PROPERTIES:
+    if rest not in QUALITIES:
         raise ValueError(f"{_short(rest)}: {_unknown(rest)}")
     return Statement(said, rest, positive)
 
@@ -75,13 +75,11 @@ def _unknown(word: str) -> str:
         return f"it is said of {', '.join(RELATIONS[word])}: {word}(...)"
     if word in FIGURES:
         return f"it is a number, to be compared: {word} < 12"
-    if word in PROPERTIES:
+    if word in QUALITIES:
         return "it is said of the whole map, without more"
     if word == "apart":
         return "no such word; write not same(T,U)"
-    return (
-        f"no such word; there are {', '.join(dict.fromkeys([*RELATIONS, *FIGURES, *PROPERTIES]))}"
-    )
+    return f"no such word; there are {', '.join(dict.fromkeys([*RELATIONS, *FIGURES, *QUALITIES]))}"
 
 
 def _relation(name: str, arguments: list[str], experience: "Experience") -> tuple[str, str | None]:

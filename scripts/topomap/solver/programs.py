@@ -29,7 +29,8 @@ def control(
     arguments = ["0", *options]
     if query.optimizes:
         arguments.append("--opt-mode=optN")
-    files = [*entry, *sorted(query.parts)]
+    stated = query.encoding == "paper"
+    files = [*entry, *(BEYOND.get(p, p) if stated else p for p in sorted(query.parts))]
     if query.places is not None:
         files.append("bound")
         arguments += ["-c", f"places={query.places}"]
@@ -39,11 +40,7 @@ def control(
     if query.horizon is not None:
         arguments += ["-c", f"horizon={query.horizon}"]
     made = clingo.Control(arguments)
-    for file in files:
-        folder = FORMS[query.encoding]
-        if query.encoding == "paper" and file in BEYOND:
-            folder /= "beyond"
-        path = folder / f"{file}.lp"
+    for path in (FORMS[query.encoding] / f"{file}.lp" for file in files):
         if not path.is_file():
             raise InputError(f"{path}: not found; topomap is not installed as a whole")
         made.load(str(path))

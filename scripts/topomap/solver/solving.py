@@ -95,7 +95,8 @@ def best(
     then the fewest places; where no map is closed, ``best so far``: the same, pending gateways
     allowed. If views may be wrong, maps that disbelieve more than another one are neither.
 
-    Maps without exceptions are looked for first: that prunes, and mostly there are some.
+    If the least genus is preferred, it comes before the exceptions. Else maps without exceptions
+    are looked for first (``preferences``).
     """
     least: tuple[int, ...] = ()
     if query.noise is not None:
@@ -105,7 +106,7 @@ def best(
         least = cheapest.cost[:2]
         query = replace(query, noise=least[0])
     for kind, closed in (("optimal", ("closed",)), ("best so far", ())):
-        for preferred, before in (("boundary", (0,)), ("exceptions", ())):
+        for preferred, before in preferences(query):
             some = False
             asked = query.having(*closed, preferred, "minimal")
             try:
@@ -119,6 +120,15 @@ def best(
                     watch.least = (*before, *watch.least)
             if some:
                 return
+
+
+def preferences(query: Query) -> list[tuple[str, tuple[int, ...]]]:
+    """The parts by which to look for maps with the fewest exceptions, one after the other until
+    there is a map, and what goes before the cost of the maps that each has. Maps without exceptions
+    come first: that prunes, and mostly there are some. But a map with exceptions may have a lesser
+    genus, so where that is preferred all maps are looked through at once."""
+    either = [("boundary", (0,)), ("exceptions", ())]
+    return either[1:] if "genus" in query.parts else either
 
 
 def _first_proved(maps: Iterator[Found | None]) -> Found | None:
