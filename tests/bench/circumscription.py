@@ -22,7 +22,7 @@ from topomap.runtime.files import output
 from topomap.runtime.watch import Watch
 from topomap.search import traversal
 from topomap.solver.circumscription import circumscribed
-from topomap.solver.enumeration import best_maps
+from topomap.solver.solving import hypotheses
 from tqdm import tqdm
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -55,13 +55,13 @@ def compared(experience: Experience, query: Query) -> Row:
     inclusion = {one.at for one in found}
     if inclusion != again or len(inclusion) != len(found):
         raise RuntimeError("clingo and the search differ")
-    best, fault = best_maps(experience, query, Watch())
-    number = {one.at for one in best}
-    if fault or not number <= inclusion:
-        raise RuntimeError(fault or "a best map is not circumscribed")
     kind = found[0].kind if found else ""
-    demands = ("boundary", "closed") if kind == "circumscribed" else ("boundary",)
-    admitted = sum(map(bool, traversal.hypotheses(experience, query.having(*demands), Watch())))
+    query = query.having("boundary", *["closed"] * (kind == "circumscribed"))
+    best = hypotheses(experience, query.having("minimal"), Watch())
+    number = {one.at for one in best if one and one.proved}
+    if not number <= inclusion:
+        raise RuntimeError("a best map is not circumscribed")
+    admitted = sum(map(bool, traversal.hypotheses(experience, query, Watch())))
     return Row(admitted, len(inclusion), len(number), len(inclusion & number), kind)
 
 

@@ -432,7 +432,7 @@ assert dict(os.environ) == before
 def test_kinds_come_from_what_was_found(seen, some, finder):
     """A map that is better than others is not the best one yet."""
     at = some[0].at
-    finder.found = [Found(at, "optimal", (6, 9), proved=False), MemoryError()]
+    finder.found = [Found(at, "optimal", (0, 6, 9), proved=False), MemoryError()]
     answer = topomap.solve(seen, optimal=True)
     assert ([one.at for one in answer], answer.fault) == ([at], "out of memory")
     assert (answer.kind, answer.proved) == ("not proved to be best", False)

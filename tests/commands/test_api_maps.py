@@ -115,7 +115,7 @@ def test_what_was_misread_is_told():
 
 
 def test_maps_are_equal_by_where_the_agent_is(made):
-    again = Map(SEEN, Found(made[0].at, "optimal", (6, 9)), 7)
+    again = Map(SEEN, Found(made[0].at, "optimal", (0, 6, 9)), 7)
     assert made[0] == again
     assert hash(made[0]) == hash(again)
     assert len({*made, again}) == len(made)

@@ -24,7 +24,7 @@ def found(done):
 
 @pytest.mark.parametrize("part", ["", *(p for p in PARTS)])
 def test_solve_gives_the_maps_of_clingo(inside, part):
-    done = inside("solve", GRID, *([f"--{part}"] if part else []), "--json")
+    done = inside("solve", GRID, *([f"--{part.replace('_', '-')}"] if part else []), "--json")
     assert done.returncode == 0
     parts = (part,) if part else ()
     assert found(done) == answers(parts, read(ROOT / GRID).facts())
@@ -53,12 +53,12 @@ def test_a_map_tells_all_about_itself(inside):
 @pytest.mark.parametrize(
     ("arguments", "kind", "count", "cost"),
     [
-        ([GRID], "optimal", 2, [6, 9]),
-        ([GRID, "--planar"], "optimal", 1, [6, 9]),
-        (["instances/grid-3x4-paper.lp"], "optimal", 8, [7, 12]),
-        (["instances/grid-3x4-paper.lp", "--genus"], "optimal", 1, [0, 7, 12]),
-        (["instances/manhattan-tour20.lp"], "best so far", 3, [8, 13]),
-        ([GRID, "--horizon", "0"], "best so far", 1, [2, 1]),
+        ([GRID], "optimal", 2, [0, 6, 9]),
+        ([GRID, "--planar"], "optimal", 1, [0, 6, 9]),
+        (["instances/grid-3x4-paper.lp"], "optimal", 8, [0, 7, 12]),
+        (["instances/grid-3x4-paper.lp", "--genus"], "optimal", 1, [0, 0, 7, 12]),
+        (["instances/manhattan-tour20.lp"], "best so far", 3, [0, 8, 13]),
+        ([GRID, "--horizon", "0"], "best so far", 1, [0, 2, 1]),
     ],
 )
 def test_optimal_says_which_kind(inside, arguments, kind, count, cost):

@@ -62,7 +62,7 @@ def test_maps_are_counted_and_drawn(outputs):
     ]
     number = expected("3x3", True)["optimal"]
     assert printed(outputs["draw"]).startswith(
-        f"{number} optimal map, cost (paths, places): (6, 9)"
+        f"{number} optimal map, cost (exceptions, paths, places): (0, 6, 9)"
     )
     for name in "draw", "ask":
         (drawing,) = drawings(outputs[name])

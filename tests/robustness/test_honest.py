@@ -222,10 +222,10 @@ def test_maps_that_are_not_proved_to_be_best_are_of_no_better_kind(inside, monke
     experience = read(ROOT / GRID)
     best = solving.best(experience, Query(), Watch())
     at = next(one.at for one in best if one.proved)
-    cut_short(monkeypatch, Found(at, "optimal", (6, 9), proved=False))
+    cut_short(monkeypatch, Found(at, "optimal", (0, 6, 9), proved=False))
     done = inside("solve", GRID, "--optimal")
     assert done.stdout.splitlines()[1:] == [
-        "1 map found, cost 6 9, not proved to be best; partial: timeout"
+        "1 map found, cost 0 6 9, not proved to be best; partial: timeout"
     ]
     file = tmp_path / "maps.json"
     assert inside("solve", GRID, "--optimal", "--json", "-o", file).returncode == 3
@@ -239,12 +239,12 @@ def test_maps_that_are_not_proved_to_be_best_are_of_no_better_kind(inside, monke
 def test_the_last_map_before_the_end_is_shown_as_not_proved(inside, monkeypatch):
     experience = read(ROOT / GRID)
     at = next(one.at for one in solving.best(experience, Query(), Watch()) if one.proved)
-    cut_short(monkeypatch, Found(at, "optimal", (6, 9), proved=False))
+    cut_short(monkeypatch, Found(at, "optimal", (0, 6, 9), proved=False))
     shown = inside("show", GRID)
     assert (shown.returncode, UNPROVED in shown.stdout) == (3, True)
     (only,), fault = best_maps(experience, Query(), Watch())
     assert (only.at, only.kind, fault) == (at, UNPROVED, "timeout")
-    best = [Found(at, "optimal", (6, 9), proved=proved) for proved in (False, True)]
+    best = [Found(at, "optimal", (0, 6, 9), proved=proved) for proved in (False, True)]
     cut_short(monkeypatch, *best)
     assert best_maps(experience, Query(), Watch()) == (best[1:], "timeout")
 

@@ -113,8 +113,9 @@ def ask(
         experience: what was seen and done.
         statement: one or more, such as ``same(3,12)``, ``places < 12``, ``not planar``; what can
             be said is in ``topomap ask --help``.
-        optimal: of closed maps with consistent boundaries, fewest paths, then fewest places; if
-            there is none, of the best so far, pending gateways allowed.
+        optimal: of the closed maps with the fewest exceptions to consistent boundaries, then the
+            fewest paths, then the fewest places; if no map is closed, of the best so far, pending
+            gateways allowed.
         bound: the most places that a map may have.
         horizon: the last step that counts.
         timeout: seconds after which it stops.

@@ -47,8 +47,9 @@ class FollowerStatus:
 
     @cached_property
     def best(self) -> list[Map]:
-        """The best maps: the closed ones with consistent boundaries, fewest paths, then fewest
-        places; if there is none, the best so far, pending gateways allowed. See ``all_best``."""
+        """The best maps: the closed ones with the fewest exceptions to consistent boundaries, then
+        the fewest paths, then the fewest places; if no map is closed, the best so far, pending
+        gateways allowed. See ``all_best``."""
         status = self.answer.status
         return [
             Map(
@@ -68,14 +69,15 @@ class FollowerStatus:
 
     @property
     def kind(self) -> str:
-        """What the best maps are: "optimal" or "best so far"; "no map", if it is proved that none
-        has consistent boundaries; else "not settled"."""
+        """What the best maps are: "optimal" or "best so far"; "no map", if it is proved that there
+        is none; else "not settled"."""
         status = self.answer.status
         return status.kind or ("no map" if status.all_best else "not settled")
 
     @property
     def cost(self) -> tuple[int, ...]:
-        """What each of the best maps costs: its paths and its places; empty if there is none."""
+        """What each of the best maps costs: its exceptions, paths and places; empty if there is
+        none."""
         return self.answer.status.cost
 
     @property

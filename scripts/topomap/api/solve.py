@@ -36,12 +36,14 @@ def solve(
 
     Parameters:
         experience: what was seen and done.
-        optimal: closed maps with consistent boundaries, fewest paths, then fewest places; if
-            there is none, the best so far, pending gateways allowed.
-        circumscribe: the same preference by set inclusion (the paper, section II: the
-            circumscription policy): the maps to which none is preferred. A map is preferred to
-            another one if its paths are some but not all of the other one's, or if its paths are
-            the same and its places are some but not all of the other one's.
+        optimal: closed maps with the fewest exceptions to consistent boundaries, then the fewest
+            paths, then the fewest places; if no map is closed, the best so far, pending gateways
+            allowed.
+        circumscribe: of the closed maps with consistent boundaries (or of all with these, if there
+            is no such map) those to which none is preferred, by set inclusion (the paper, section
+            II: the circumscription policy). A map is preferred to another one if its paths are
+            some but not all of the other one's, or if its paths are the same and its places are
+            some but not all of the other one's.
         bound: the most places that a map may have.
         horizon: the last step that counts.
         noise: how many views may be wrong, as few as can be.

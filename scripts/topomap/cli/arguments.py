@@ -217,8 +217,9 @@ def add_optimal(command: Parser) -> None:
     command.add_argument(
         "--optimal",
         action="store_true",
-        help="closed maps with consistent boundaries, the fewest paths, then the fewest places; "
-        "if there is none, the best so far, in which gateways may be pending",
+        help="closed maps with the fewest exceptions to consistent boundaries, then the fewest "
+        "paths, then the fewest places; if no map is closed, the best so far, in which gateways "
+        "may be pending",
     )
 
 
@@ -226,10 +227,10 @@ def add_circumscribe(command: Parser) -> None:
     command.add_argument(
         "--circumscribe",
         action="store_true",
-        help="the same preference by set inclusion, as circumscription has it: the maps to which "
-        "none is preferred. A map is preferred to another one if its paths are some but not all "
-        "of the other one's, or if its paths are the same and its places are some but not all of "
-        "the other one's",
+        help="of the closed maps with consistent boundaries (or of all with these, if there is no "
+        "such map) those to which none is preferred, by set inclusion, as circumscription has it. "
+        "A map is preferred to another one if its paths are some but not all of the other one's, "
+        "or if its paths are the same and its places are some but not all of the other one's",
     )
 
 

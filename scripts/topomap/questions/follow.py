@@ -54,8 +54,6 @@ class StepAnswer:
             count = words.number(len(status.best), f"{status.kind} map")
             many = "" if status.all_best else "more than "
             yield f"  {many}{count}, cost {' '.join(map(str, status.cost))}"
-        elif status.all_best and not self.fault:
-            yield "  no map has consistent boundaries"
         if self.plan is not None:
             yield f"  next: {_next(self.plan, self.experience, status.all_best)}"
         elif status.best and not self.fault:
