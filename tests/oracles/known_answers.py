@@ -13,7 +13,7 @@ from functools import cache, partial
 from itertools import combinations, product
 
 from conftest import ENCODINGS, PARTS, Truth, beyond, forms
-from topomap.documents.check import STEP_RULES, by_definition, by_rules
+from topomap.documents.check import NO_PATH_AXIOM, STEP_RULES, by_definition, by_rules
 from topomap.model.experience import MARKER, Experience, observe
 from topomap.model.topology import TopologicalMap
 from topomap.questions.standings import Standing
@@ -24,9 +24,9 @@ from topomap.worlds.route import snake
 from oracles import phase_answers, walks
 from oracles.broken_rules import Assignment, assignments, reasons
 from oracles.brute_force import Hypothesis
-from oracles.maps_with_errors import DEMANDS, INSTANCES, by_hand, contradicting, drawn
+from oracles.maps_with_errors import DEMANDS, INSTANCES, by_hand, coming_back, contradicting, drawn
 from oracles.misreadings import brute, corrupted, expected
-from oracles.statements import FIGURES, PROPERTIES, RELATIONS, relation
+from oracles.statements import FIGURES, PROPERTIES, QUALITIES, RELATIONS, relation
 from oracles.worlds import WORLDS, informed, logs, of_grid, random_experience, walked
 
 
@@ -711,8 +711,9 @@ def check() -> Iterator[Query]:
     """Maps, sound and with errors, with the violations that are there by definition. What a
     broken step does to the map as a whole is not defined, so a map with one is asked only
     where both checkers say the same."""
-    for experience, at in [*by_hand(), *drawn(120), *contradicting(80)]:
-        for demands in (DEMANDS, ()):
+    alone = ("boundary", "perpendicular", "travelled")
+    for experience, at in [*by_hand(), *drawn(120), *contradicting(80), *coming_back(80)]:
+        for demands in (DEMANDS, (), (*alone, NO_PATH_AXIOM)):
             violations = by_definition(experience, at, demands)
             broken = STEP_RULES & dict(violations).keys()
             if broken and by_rules(experience, at, demands) != violations:
@@ -730,11 +731,16 @@ def demands() -> Iterator[Query]:
     yield Query(("check",), "", shown(nowhere))
     yield Query(("check",), "slots(4). demand(plan).", shown(nowhere, "violation(plan,0)"))
     facts = "slots(4). view(0,0). view(1,0). turn(1,0). at(0,0,0). at(1,1,0). "
-    sound = ("planar", "closed", "travelled", "boundary", "perpendicular")
+    sound = ("planar", "closed", "travelled", "boundary", "perpendicular", NO_PATH_AXIOM)
     for demand in (*sound, "bound(2)", "bound(2147483647)"):
         yield Query(("check",), f"{facts} demand({demand}).", shown())
     for demand in ("plannar", "bound", "bound(a)", "bound(#inf)", '"closed"', "2"):
         yield Query(("check",), f"{facts} demand({demand}).", shown(f"violation({demand},1)"))
+    for fact, breaks in (("", True), (" no_path_axiom.", False)):
+        told = (
+            "slots(4). view(0,0). view(0,1). turn(1,0). view(1,0). view(1,3). at(0,0,0). at(1,0,1)."
+        )
+        yield Query(("check",), told + fact, shown(*["violation(path_twice,1)"] * breaks))
 
 
 def faults() -> Iterator[Query]:
@@ -744,7 +750,7 @@ def faults() -> Iterator[Query]:
 
 
 COMPARED = {"number": int.__eq__, "least": int.__ge__, "most": int.__le__}
-NAMED = {"places": "place", "paths": "path", "links": "link"}
+NAMED = {"places": "place", "paths": "path", "links": "link", "exceptions": "exception"}
 
 
 def asked() -> Iterator[Query]:
@@ -755,10 +761,18 @@ def asked() -> Iterator[Query]:
         draw = random.Random(experience.facts())
         for _ in range(3 if len(truth.final) < 100 else 0):
             yield from _asked(draw, experience, truth)
+    for seed in range(60):
+        draw = random.Random(f"asked without the path axiom {seed}")
+        experience = random_experience(draw, draw.choice([4, 5, 6, 7]))
+        truth = Truth(experience, axiom=False)
+        if len(truth.final) < 100:
+            yield from _asked(draw, experience, truth, "no_path_axiom")
     yield from statements(CORRIDOR, Truth(CORRIDOR), {})
 
 
-def _asked(draw: random.Random, experience: Experience, truth: Truth) -> Iterator[Query]:
+def _asked(
+    draw: random.Random, experience: Experience, truth: Truth, *more: str
+) -> Iterator[Query]:
     """Some statements."""
     tests = {}
     for kind in draw.choices([*RELATIONS], k=8):
@@ -769,14 +783,24 @@ def _asked(draw: random.Random, experience: Experience, truth: Truth) -> Iterato
             number = draw.randint(0, experience.steps + 2)
             term = f"{how}({NAMED.get(figure, figure)},{number})"
             tests[term] = partial(_compared, FIGURES[figure], COMPARED[how], number)
-    for name in draw.sample([*PROPERTIES], 1):
-        tests[name] = PROPERTIES[name]
-    yield from statements(experience, truth, tests)
-    yield from statements(experience, truth, {"boundary": PROPERTIES["boundary"]})
+    for name in draw.sample([*QUALITIES], 1):
+        tests[name] = QUALITIES[name]
+    yield from statements(experience, truth, tests, *more)
+    yield from statements(experience, truth, {"boundary": PROPERTIES["boundary"]}, *more)
+    figure = draw.choice(["paths", "exceptions"])  # that it is asked for by itself grounds enough
+    number = FIGURES[figure](draw.choice([*truth.final.values()])) if truth.final else 1
+    term, test = f"number({NAMED[figure]},{number})", COMPARED["number"]
+    alone = {term: partial(_compared, FIGURES[figure], test, number)}
+    yield from statements(experience, truth, alone, *more)
+    name = draw.choice(["circular", "meets_twice"])
+    yield from statements(experience, truth, {name: QUALITIES[name]}, *more)
 
 
 def statements(
-    experience: Experience, truth: Truth, tests: dict[str, Callable[[Hypothesis], bool]]
+    experience: Experience,
+    truth: Truth,
+    tests: dict[str, Callable[[Hypothesis], bool]],
+    *more: str,
 ) -> Iterator[Query]:
     """Statements, each with what it says of a hypothesis, told of each hypothesis."""
     answers = set()
@@ -785,7 +809,8 @@ def statements(
         atoms |= {f"holds({term})" for term, test in tests.items() if test(h)}
         answers.add(((), frozenset(atoms)))
     facts = experience.facts() + "".join(f"ask({term})." for term in tests)
-    yield Query(("topomap", "query"), facts, frozenset(answers), tuple(experience.constants()))
+    files, how = ("topomap", "query", *more), tuple(experience.constants())
+    yield Query(files, facts, frozenset(answers), how)
 
 
 def _so(test: Callable[..., bool], numbers: list[int], h: Hypothesis) -> bool:

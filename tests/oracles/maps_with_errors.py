@@ -3,6 +3,7 @@
 import random
 from collections.abc import Iterator
 from dataclasses import replace
+from itertools import islice
 
 from topomap.model.experience import MARKER, Experience
 from topomap.model.facts import parse
@@ -148,6 +149,19 @@ def contradicting(number: int) -> Iterator[tuple[Experience, At]]:
             told = [(step, *dstate) for step, dstate in enumerate(at)]
             yield experience, told
             yield experience, with_errors(draw, experience, told)
+
+
+def coming_back(number: int) -> Iterator[tuple[Experience, At]]:
+    """Maps of which, as a rule, a path is circular or holds a place twice."""
+    for seed in range(number):
+        draw = random.Random(f"coming back {seed}")
+        experience = random_experience(draw, draw.choice([4, 5, 6, 7]))
+        node = traversal.root(experience, Query(frozenset(["no_path_axiom"])))
+        ends = (one for one in traversal.depth_first(node) if one.steps == experience.steps)
+        found = [one.dstates for one in islice(ends, 300)]
+        wrong = [at for at in found if experience.map_of(at).path_axiom_fault()]
+        for at in draw.sample(wrong or found, 1):
+            yield experience, [(step, *dstate) for step, dstate in enumerate(at)]
 
 
 # Facts, and the errors that input.lp shows.
