@@ -59,8 +59,7 @@ def by_definition(experience: Experience, at: At, demands: Sequence[str] = ()) -
             elif place in steps and len(dstates) == 1:
                 stands[step] = place, slot
     for step, (place, slot) in stands.items():
-        seen = {(slot + other) % experience.slots for other in experience.views[step]}
-        if seen != experience.views[place]:
+        if not _same_view(experience, step, place, slot):
             found.add(("view", step))
         if experience.landmarks[step] != experience.landmarks[place]:
             found.add(("landmark", step))
@@ -108,7 +107,7 @@ def _contradictions(experience: Experience, stands: dict[int, Gateway]) -> set[V
         turned = stands[other][1] - stands[one][1]
         slots = experience.compass[one : other + 1 : other - one]
         north = [slot for slot in slots if slot is not None]
-        if len(north) == 2 and (north[1] - north[0] - turned) % experience.slots:
+        if len(north) == 2 and _off(experience, north[1] - north[0] - turned):
             found.add(("compass", other))
         moved = [shift for shift in _shifts(experience)[one:other] if shift]
         if len(moved) == other - one:
@@ -149,8 +148,46 @@ def _ways(
     """The steps, with the gateways that they leave and arrive by."""
     for step, turn in enumerate(experience.turns, 1):
         if turn is not None and step in stands and step - 1 in stands:
-            place, slot = stands[step - 1]
-            yield step, (place, (slot + turn) % experience.slots), stands[step]
+            yield step, _gateway_seen(experience, step - 1, turn, stands[step - 1]), stands[step]
+
+
+def _off(experience: Experience, slots: int) -> bool:
+    """Whether so many slots, round the circle, are more than bearings may be wrong by."""
+    return min(slots % experience.slots, -slots % experience.slots) > experience.tolerance
+
+
+def _gateway_seen(experience: Experience, step: int, slot: int, stands: Gateway) -> Gateway:
+    """The gateway of the place, where the agent stands after a step, that it sees in this slot."""
+    place, base = stands
+    if experience.tolerance:
+        star, view = sorted(experience.views[place]), sorted(experience.views[step])
+        ahead = star[star.index(base) :] + star[: star.index(base)]
+        if slot in view and view.index(slot) < len(ahead):
+            return place, ahead[view.index(slot)]
+    return place, (base + slot) % experience.slots
+
+
+def _same_view(experience: Experience, step: int, place: int, slot: int) -> bool:
+    """Whether what is seen after a step is what the first visit of the place saw: the same
+    gateways, as far as bearings are exact, and the same ones of these on one path."""
+    view, star = experience.views[step], experience.views[place]
+    stands = place, slot
+    there = {one: _gateway_seen(experience, step, one, stands)[1] for one in view}
+    if len(view) != len(star) or {*there.values()} != {*star}:
+        return False
+    if any(_off(experience, end - slot - one) for one, end in there.items()):
+        return False
+    lines = {frozenset(there[one] for one in line) for line in _lines(experience, step)}
+    return lines == _lines(experience, place)
+
+
+def _lines(experience: Experience, visit: int) -> set[frozenset[int]]:
+    """The pairs of gateways seen at a visit that are on one path."""
+    if experience.straight:
+        return {*map(frozenset, experience.straight[visit])}
+    half = experience.slots // 2
+    pairs = combinations(experience.views[visit], 2)
+    return {frozenset(pair) for pair in pairs if abs(pair[0] - pair[1]) == half}
 
 
 class Grown:
@@ -165,6 +202,11 @@ class Grown:
         self.slots, self.half, self.step = experience.slots, experience.slots // 2, step
         places = sorted({place for t, (place, _) in stands.items() if t <= step})
         self.stars = {place: sorted(experience.views[place]) for place in places}
+        self.lines: dict[Gateway, Gateway] = {}
+        self.told = bool(experience.straight)  # which gateways are on one path
+        for place in places if self.told else ():
+            for one, other in experience.straight[place]:
+                self.lines |= {(place, one): (place, other), (place, other): (place, one)}
         self.dstate = stands.get(step)
         self.links: dict[Gateway, Gateway] = {}
         self.first: dict[Gateway, int] = {}
@@ -182,8 +224,17 @@ class Grown:
         }
 
     def opposite(self, gateway: Gateway) -> Gateway:
-        """The direction straight across the place."""
-        return gateway[0], (gateway[1] + self.half) % self.slots
+        """The direction straight across the place. Where it is told which gateways are on one path,
+        that of a path which ends at gateway S is -1 - S."""
+        place, slot = gateway
+        if self.told:
+            return self.lines.get(gateway, (place, -1 - slot))
+        return place, (slot + self.half) % self.slots
+
+    def bearing(self, heading: Gateway) -> Gateway:
+        """A heading by its slot."""
+        place, slot = heading
+        return place, slot if slot >= 0 else (self.half - 1 - slot) % self.slots
 
     def paths(self) -> list[list[Gateway]]:
         """Each path, as its places with the slot of its heading."""
@@ -199,11 +250,21 @@ class Grown:
         return [list(path) for path in sorted(paths)]
 
     def one_way(self, path: list[Gateway]) -> list[Gateway]:
-        """The least way to write a path down: it may be taken back, a circular one anywhere."""
+        """The least way to write a path down."""
+        return min(self.ways(path))
+
+    def ways(self, path: list[Gateway]) -> list[list[Gateway]]:
+        """The ways to write a path down: it may be taken back, a circular one anywhere."""
         ways = [path, [self.opposite(heading) for heading in reversed(path)]]
         if path and self.links.get(path[-1]) == self.opposite(path[0]):
             ways = [way[n:] + way[:n] for way in ways for n in range(len(way))]
-        return min(ways)
+        return ways
+
+    def forms(self) -> list[dict[tuple[Gateway, ...], tuple[Gateway, ...]]]:
+        """Of each path the ways to write it down, with the slots of its headings, each with the
+        least of them."""
+        every = ([tuple(map(self.bearing, way)) for way in self.ways(p)] for p in self.paths())
+        return [dict.fromkeys(ways, min(ways)) for ways in every]
 
     def path_twice(self, _: int) -> bool:
         return any(
@@ -270,12 +331,14 @@ class Grown:
     def beside(self, path: list[Gateway]) -> tuple[set[int], set[int]]:
         """The places at the right and left of a path."""
         sides: tuple[set[int], set[int]] = set(), set()
-        for place, slot in path:
+        for heading in path:
+            place, slot = self.bearing(heading)
+            behind = (self.bearing(self.opposite(heading))[1] - slot) % self.slots
             for other in self.stars[place]:
                 turn = (other - slot) % self.slots
-                if turn % self.half:
+                if turn not in (0, behind):
                     met = {place for place, _ in self.ahead.get((place, other), [])}
-                    sides[turn > self.half].update(met)
+                    sides[turn > behind].update(met)
         return sides
 
     def across(self, gateway: Gateway) -> frozenset[Gateway]:

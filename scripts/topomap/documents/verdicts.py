@@ -338,7 +338,10 @@ def _links(grown: Grown, _: Experience, said: Any) -> bool:
 
 
 def _paths(grown: Grown, _: Experience, said: Any) -> bool:
-    return sorted(grown.one_way(_gateways(path)) for path in list_of(said)) == grown.paths()
+    forms = grown.forms()
+    least = {way: of for form in forms for way, of in form.items()}
+    theirs = sorted(least[tuple(_gateways(path))] for path in list_of(said))
+    return theirs == sorted(next(iter(form.values())) for form in forms)
 
 
 def _faces(grown: Grown, _: Experience, said: Any) -> bool:

@@ -56,8 +56,7 @@ def exceptions_of(experience: Experience, at: Sequence[DState]) -> list[NamedExc
             for gateway in (at[step], world.opposite(at[step])):
                 steps.setdefault(gateway, step)
     names: list[Name] = [
-        min((steps[dstate] for dstate in path if dstate in steps), default=0)
-        or gid((path[0][0], world.bearing(path[0])))
+        min((steps[dstate] for dstate in path if dstate in steps), default=0) or gid(path[0])
         for path in world.paths()
     ]
     return [
