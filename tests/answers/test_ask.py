@@ -7,7 +7,7 @@ import re
 
 import clingo
 import pytest
-from conftest import ENCODINGS, ROOT, TRIED, Truth, run
+from conftest import ENCODINGS, ROOT, TRIED, Truth, plain, run
 from oracles.brute_force import Hypothesis
 from oracles.statements import FIGURES, PROPERTIES, QUALITIES, RELATIONS, relation
 from oracles.worlds import WORLDS, random_experience
@@ -271,8 +271,7 @@ def test_what_is_asked_of_the_4x4_snake_is_what_its_maps_say():
     query = Query(frozenset(["planar", "closed"]), 16)
     maps = [found.at for found in hypotheses(experience, query, Watch())]
     assert len(maps) == 6
-    seen = experience.slots, experience.views, (None, *experience.turns), experience.landmarks
-    whole = {at: Hypothesis(seen, at) for at in maps}
+    whole = {at: Hypothesis(plain(experience), at) for at in maps}
     draw = random.Random("snake")
     texts, tests = zip(*(statement(draw, experience) for _ in range(60)), strict=True)
     demand(settled(experience, texts, query), experience, tests, whole, ["planar", "closed"])

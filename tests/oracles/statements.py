@@ -1,23 +1,21 @@
 """Statements about hypotheses, and whether they hold, by the independent search's own means."""
 
-from oracles.brute_force import Hypothesis
+from oracles.brute_force import Hypothesis, counterpart
 
 
 def gateway(h, step, slot):
     """The gateway so many slots clockwise of where the agent stood after a step."""
-    place, stood_at = h.at[step]
-    return place, (stood_at + slot) % h.slots
+    if h.inexact and slot not in h.views[step]:
+        return h.at[step][0], None
+    return counterpart(h.slots, h.views, h.at, step, slot, h.inexact)
 
 
 def one_path(h, one, other):
     """Whether two gateways are there, and one path leads through both."""
 
-    def lies(path, place, slot):
-        axis = slot % (h.slots // 2)
-        return any((p, heading % (h.slots // 2)) == (place, axis) for p, heading in path)
-
     there = all(slot in h.stars[place] for place, slot in (one, other))
-    return there and any(lies(path, *one) and lies(path, *other) for path in h.paths())
+    paths = [{*path} | {h.opposite(heading) for heading in path} for path in h.paths()]
+    return there and any({one, other} <= path for path in paths)
 
 
 RELATIONS = {

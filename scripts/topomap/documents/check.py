@@ -148,7 +148,9 @@ def _ways(
     """The steps, with the gateways that they leave and arrive by."""
     for step, turn in enumerate(experience.turns, 1):
         if turn is not None and step in stands and step - 1 in stands:
-            yield step, _gateway_seen(experience, step - 1, turn, stands[step - 1]), stands[step]
+            out = _gateway_seen(experience, step - 1, turn, stands[step - 1])
+            if out is not None:
+                yield step, out, stands[step]
 
 
 def _off(experience: Experience, slots: int) -> bool:
@@ -156,15 +158,16 @@ def _off(experience: Experience, slots: int) -> bool:
     return min(slots % experience.slots, -slots % experience.slots) > experience.tolerance
 
 
-def _gateway_seen(experience: Experience, step: int, slot: int, stands: Gateway) -> Gateway:
-    """The gateway of the place, where the agent stands after a step, that it sees in this slot."""
+def _gateway_seen(experience: Experience, step: int, slot: int, stands: Gateway) -> Gateway | None:
+    """The gateway of the place, where the agent stands after a step, that it sees in this slot; None
+    if there is none."""
     place, base = stands
-    if experience.tolerance:
-        star, view = sorted(experience.views[place]), sorted(experience.views[step])
-        ahead = star[star.index(base) :] + star[: star.index(base)]
-        if slot in view and view.index(slot) < len(ahead):
-            return place, ahead[view.index(slot)]
-    return place, (base + slot) % experience.slots
+    if not experience.tolerance:
+        return place, (base + slot) % experience.slots
+    star, view = sorted(experience.views[place]), sorted(experience.views[step])
+    ahead = star[star.index(base) :] + star[: star.index(base)]
+    number = view.index(slot) if slot in view else len(ahead)
+    return (place, ahead[number]) if number < len(ahead) else None
 
 
 def _same_view(experience: Experience, step: int, place: int, slot: int) -> bool:
@@ -172,7 +175,12 @@ def _same_view(experience: Experience, step: int, place: int, slot: int) -> bool
     gateways, as far as bearings are exact, and the same ones of these on one path."""
     view, star = experience.views[step], experience.views[place]
     stands = place, slot
-    there = {one: _gateway_seen(experience, step, one, stands)[1] for one in view}
+    there = {
+        one: end[1]
+        for one in view
+        for end in [_gateway_seen(experience, step, one, stands)]
+        if end is not None
+    }
     if len(view) != len(star) or {*there.values()} != {*star}:
         return False
     if any(_off(experience, end - slot - one) for one, end in there.items()):
