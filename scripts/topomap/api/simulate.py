@@ -110,8 +110,9 @@ def simulate(
     best maps apart; then hold these against the truth (the paper, section IV).
 
     Parameters:
-        world: ``grid``, ``torus``, ``cylinder``, ``maze``, ``hexagons`` or ``triangles``, with
-            ``size``, its rows and columns; or an environment that was made before.
+        world: ``grid``, ``torus``, ``cylinder``, ``crescents``, ``maze``, ``hexagons`` or
+            ``triangles``, with ``size``, its rows and columns; or an environment that was made
+            before.
         start: the first place, such as ``0,2``; the smallest by default.
         facing: the gateway stood at first, a slot; the smallest by default.
         signs: the share of places, 0 to 1, that carry their own name as a landmark.
@@ -124,7 +125,8 @@ def simulate(
         compass, odometry, lengths: what it measures besides views, as in ``generate``.
         drift, stretch: how far it takes its shifts and lengths to be wrong, in percent; 10 by
             default, or as much as ``odometry``.
-        parts: what it takes for granted: ``planar``, ``perpendicular``.
+        parts: what it takes for granted: ``planar``, ``perpendicular``; and ``no_path_axiom``, that
+            a path may hold a place twice, and may be circular.
 
     Returns:
         What came of it: ``end``, ``maps``, ``truth``, ``experience``, ``steps``, and for

@@ -49,7 +49,7 @@ def map_line(experience: Experience, found: Found) -> str:
     """A hypothesis in one line: what it disbelieves, its size, and the dstate after each step.
     The experience is the corrected one."""
     if not found.misread:
-        return Texts(experience).line(found)
+        return Texts(experience, path_axiom=False).line(found)
     world = experience.map_of(found.at)
     size = (
         len(world.stars),
@@ -68,11 +68,12 @@ def _line(size: tuple[int, int, int, int, int], way: str) -> str:
 
 
 class Texts:
-    """The maps of one experience as text; what is the same in many of them is made once."""
+    """The maps of one experience as text, with or without the path axiom; what is the same in many
+    of them is made once."""
 
-    def __init__(self, experience: Experience):
+    def __init__(self, experience: Experience, path_axiom: bool = True):
         self._experience = experience
-        self._numbering = Numbering(experience)
+        self._numbering = Numbering(experience, path_axiom)
         self._names: dict[DState, str] = {}  # of a dstate, in a line
         slots = experience.slots
         self._gateways = [  # by number, as JSON
@@ -146,7 +147,7 @@ class Report:
     ):
         self.out, self.as_json = out, as_json
         self.experience, self.truth = experience, truth
-        self._texts = Texts(experience)
+        self._texts = Texts(experience, "no_path_axiom" not in query.parts)
         self.count = self.real = 0
         self.noisy = query.noise is not None
         self.last = Found((), kind or query.kind)

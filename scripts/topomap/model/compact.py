@@ -14,10 +14,11 @@ Number = int
 
 class Numbering:
     """What all maps of one experience have in common. Each step of these arrives at a gateway that
-    is seen there."""
+    is seen there. With the path axiom no path is circular, which spares work."""
 
-    def __init__(self, experience: Experience):
+    def __init__(self, experience: Experience, path_axiom: bool = True):
         self.slots = slots = experience.slots
+        self.path_axiom = path_axiom
         self.turns = experience.turns
         self.parted = experience.parted
         views = [sorted(view) for view in experience.views]
@@ -66,8 +67,10 @@ class CompactMap:
         return [gateway for place in self.places for gateway in every[place]]
 
     def number_of_paths(self) -> int:
-        """How many paths there are. As no path is circular, each link makes two paths one, so there
-        are as many as there are axes, less the links."""
+        """How many paths there are. Where no path is circular, each link makes two paths one, so
+        there are as many as there are axes, less the links."""
+        if not self._all.path_axiom:
+            return len(self.paths())
         axes = self._all.axes
         return sum([axes[place] for place in self.places]) - len(self.link) // 2
 
@@ -129,15 +132,16 @@ class CompactMap:
         for gateway in self.gateways():
             if gateway in done:
                 continue
-            # Back to where the path begins; no path is circular.
+            # Back to where the path begins, or, where it is circular, to this gateway.
             path = [gateway]
             ahead = opposite[gateway]
-            while ahead in link:
+            while ahead in link and link[ahead] != gateway:
                 path.append(link[ahead])
                 ahead = opposite[link[ahead]]
-            path.reverse()
+            circular = ahead in link
+            path = [gateway] if circular else path[::-1]
             ahead = gateway
-            while ahead in link:
+            while ahead in link and opposite[link[ahead]] != gateway:
                 ahead = opposite[link[ahead]]
                 path.append(ahead)
             for heading in path:

@@ -32,7 +32,7 @@ from topomap.worlds.senses import Senses
 from topomap.worlds.tours import tour as tour_of
 
 MOST_MAPS = 100  # best maps of which a walk is planned, while none is closed
-TIMES = 2  # as many places as a closed map with exceptions has may a map without any have
+LARGER = 50  # percent more places than a closed map with exceptions may a map without any have
 WALKS = 101  # random walks, of which the median is told
 ENDED = ("settled", "bisimilar", "no map")  # the ways to end that are no limit
 ENDS = {
@@ -355,15 +355,16 @@ def rivals(
     experience: Experience, query: Query, maps: Sequence[Found], watch: Watch
 ) -> list[Found]:
     """Where the best maps are closed, and have exceptions: the maps without any, with the fewest
-    paths, then the fewest places, that have at most TIMES as many places; in order, and MOST_MAPS
-    of them, if they are more. They have pending gateways, so a walk can test them. As long as there
-    are some, the best maps are not believed.
+    paths, then the fewest places, that have at most LARGER percent more places; in order, and
+    MOST_MAPS of them, if they are more. They have pending gateways, so a walk can test them. As
+    long as there are some, the best maps are not believed.
 
     There is a limit because no walk excludes that each step came to a new place, and such a map
-    mostly has no exceptions."""
+    mostly has no exceptions. It is less than twice as many places: a map that is the closed one
+    twice over often has none, either, and no walk tells it from that."""
     if maps[0].kind != "optimal" or not maps[0].cost[0]:
         return []
-    most = TIMES * maps[0].cost[-1]
+    most = maps[0].cost[-1] * (100 + LARGER) // 100
     bounded = replace(query, places=min(most, query.places or most))
     asked = bounded.having("boundary", "minimal")
     return _first(choice.hypotheses(experience, asked, watch, "best so far"))
