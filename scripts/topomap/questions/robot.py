@@ -116,8 +116,8 @@ class Outcome:
         fault = world.path_axiom_fault()
         if fault and "no_path_axiom" not in self.query.parts:
             yield f"the truth breaks the path axiom, and so is no map: {fault}; --no-path-axiom"
-        elif many := sum(1 for _ in world.exceptions()):
-            yield f"the truth has {number(many, 'exception')} to consistent boundaries"
+        elif breaks := sum(1 for _ in world.exceptions()):
+            yield f"the truth has {number(breaks, 'exception')} to consistent boundaries"
         so_far = " so far" * (self.end not in ENDED)
         if self.maps and self.truth is None:
             many = number(len(self.maps), "best map")
