@@ -84,6 +84,19 @@ def test_nothing_is_said_where_it_was_not_asked(topomap, options):
     assert "in_the_way" not in json.loads(topomap("solve", LOOP, *options, "--json").stdout)
 
 
+def test_what_is_in_the_way_is_a_key_of_a_document(topomap, tmp_path):
+    """The file that solve writes is read again; another name there is a fault."""
+    file = tmp_path / "none.json"
+    assert topomap("solve", LOOP, "--closed", "--json", "-o", file).returncode == 1
+    assert "in_the_way" not in topomap("check", LOOP, file).stderr
+    document = json.loads(file.read_text())
+    for wrong in ([["path_axiom"]], ["axiom"], "path_axiom"):
+        file.write_text(json.dumps({**document, "in_the_way": wrong}))
+        done = topomap("check", LOOP, file)
+        assert done.returncode == 2
+        assert "in_the_way" in done.stderr
+
+
 def test_nothing_is_said_where_nothing_helps(topomap, tmp_path):
     file = tmp_path / "one.lp"
     file.write_text("slots(4). view(0,0).\n")
