@@ -8,7 +8,7 @@
 #                 BENCH: options, such as BENCH='--only 8x8', BENCH=--quick, BENCH=--help)
 # make figures    draw the pictures of the pages again, docs/figures/
 # make knowledge  count what a compass and odometry leave, docs/knowledge.md and its picture (an hour)
-# make simulate   let robots explore twenty worlds, docs/simulations.json (seconds)
+# make simulate   let robots explore 21 worlds, docs/simulations.json (seconds)
 # make circumscription   compare both readings of the preference, docs/circumscription.md
 #                 (twenty minutes)
 # make beyond     count what is beyond the paper's table, docs/beyond.json (an hour)

@@ -21,9 +21,12 @@ from topomap.solver.online import Certain, OnlineSolver
 WATCH = Watch()
 
 
-def begun(experience, planar=False, bound=None, most=online.MOST_COUNTED):
+def begun(experience, planar=False, bound=None, most=online.MOST_COUNTED, path_axiom=True):
     measured = experience.drift, experience.stretch
-    return OnlineSolver(experience.slots, told(experience, 0), planar, bound, most, *measured)
+    first = told(experience, 0)
+    return OnlineSolver(
+        experience.slots, first, planar, bound, most, *measured, path_axiom=path_axiom
+    )
 
 
 def go(follower, experience, step):
@@ -84,6 +87,39 @@ def test_each_step_of_random_experiences(cases):
         experience = random_experience(draw, draw.choice([6, 9, 12]))
         bound = draw.choice([None, None, 3, 5])
         assert list(follow_all(experience, draw.random() < 0.5, bound))
+
+
+@pytest.mark.parametrize("cases", [60, pytest.param(800, marks=pytest.mark.long)])
+def test_each_step_without_the_path_axiom(cases):
+    """Worlds with loops and rooms that come back among them; what is preferred is said of all maps
+    of the oracle. A step that was taken back leaves no trace here, either."""
+    for number in range(cases):
+        draw = random.Random(f"online without the axiom {number}")
+        experience = random_experience(draw, draw.choice([4, 6, 7]))
+        planar, bound = draw.random() < 0.5, draw.choice([None, None, 3])
+        seen = plain(experience)
+        follower = begun(experience, planar, bound, path_axiom=False)
+        for step, level in enumerate(tree(seen, planar, bound, axiom=False)):
+            if step:
+                go(follower, experience, step)
+                if draw.random() < 0.3:
+                    follower.undo()
+                    go(follower, experience, step)
+            status = follower.status(WATCH)
+            assert (status.fault, status.hypotheses, status.exact) == (None, len(level), True)
+            assert (status.certain.same, status.certain.new) == certain(level) or not level
+            cut = plain(experience.cut(step))
+            every = {at: Hypothesis(cut, at) for at in level}
+            worth = {
+                at: (not one.closed(), sum(one.exceptions()), *one.cost())
+                for at, one in every.items()
+            }
+            first = min(worth.values(), default=(None,))
+            assert set(status.best) == {at for at in worth if worth[at] == first}
+            assert status.cost == first[1:]
+            TRIED["statuses of a follower without the path axiom"] += 1
+            broken = sum(one.breaks_path_axiom() for one in every.values())
+            TRIED["followed maps that break the path axiom"] += broken
 
 
 @pytest.mark.parametrize("cases", [30, pytest.param(1500, marks=pytest.mark.long)])

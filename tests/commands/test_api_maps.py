@@ -297,14 +297,14 @@ def test_a_world_that_is_too_large():
 
 
 def test_a_robot_is_not_sent_into_nothing():
-    with pytest.raises(ValueError, match=r"'closed' is not one of the parts planar, perpendicular"):
+    with pytest.raises(
+        ValueError, match=r"'closed' is not one of the parts planar, .*no_path_axiom"
+    ):
         simulate("grid", 2, 3, closed=True)
     with pytest.raises(ValueError, match="rows and columns are wanted, not 1 numbers"):
         simulate("grid", 2)
     with pytest.raises(ValueError, match="'gird' is not one of the environments grid"):
         simulate("gird", 2, 3)
-    with pytest.raises(InputError, match="torus-3x3: its own map breaks the path axiom"):
-        simulate("torus", 3, 3)
     with pytest.raises(InputError, match="grid-2x3: there is no place '7,7'"):
         simulate("grid", 2, 3, start="7,7")
 

@@ -11,6 +11,7 @@ from topomap.runtime.errors import InputError
 from topomap.worlds.environment import environment, grid, lattice, maze
 from topomap.worlds.instance import instance
 from topomap.worlds.route import COMPASS, letters, snake
+from topomap.worlds.senses import Senses
 from topomap.worlds.tours import tour
 
 
@@ -52,6 +53,7 @@ def test_routes_refused(text, slots):
     [
         grid(3, 4),
         grid(2, 3, "cylinder"),
+        grid(2, 3, "crescents"),
         grid(3, 3, "torus"),
         maze(4, 4, 0.5, 3),
         lattice("hexagons", 2, 2),
@@ -95,7 +97,7 @@ def test_signs_are_drawn_as_promised():
 def test_a_tour_is_that_of_networkx(seed):
     """Its own way to double ways, which can be ended, doubles the same ones."""
     draw = random.Random(seed)
-    kind = draw.choice(["grid", "torus", "cylinder", "maze", "hexagons", "triangles"])
+    kind = draw.choice(["grid", "torus", "cylinder", "crescents", "maze", "hexagons", "triangles"])
     size = draw.randint(2, 6), draw.randint(2, 6)
     made = environment(kind, *size, thin=draw.random(), seed=seed).map
     graph = nx.MultiGraph()
@@ -135,6 +137,31 @@ def test_headers_and_names_tell_how():
     )
     assert "breaks" not in record.text()
     assert "breaks the path axiom" in instance(grid(3, 3, "torus"), "N").text()
+
+
+def test_which_option_keeps_the_real_map_is_said(topomap):
+    done = topomap("generate", "torus", 3, 3, "--route", "NN")
+    assert done.returncode == 0
+    assert done.stderr == (
+        "torus-3x3-NN: the environment's own map breaks the path axiom; --no-path-axiom keeps it\n"
+    )
+    assert topomap("generate", "crescents", 1, 2, "--route", "E").stderr == ""
+
+
+def test_crescents_join_columns():
+    """Of three columns the first two are one path, which meets both rows twice; once round a
+    crescent the moves sum to nothing."""
+    made = grid(2, 3, "crescents")
+    assert made.map.path_axiom_fault() is None
+    twice = [one for one in made.map.exceptions() if one.kind == "meet twice"]
+    assert sorted(one.places for one in twice) == [((row, 0), (row, 1)) for row in range(2)]
+    assert made.map.genus() == 0
+    record = instance(made, "0,3", senses=Senses(odometry=0))
+    assert record.experience.map_of(record.truth).links == {(0, 0): (1, 0), (1, 0): (0, 0)} | {
+        (1, 3): (0, 1),
+        (0, 1): (1, 3),
+    }
+    assert [sum(one) for one in zip(*record.experience.shifts, strict=True)] == [0, 0]
 
 
 def test_the_call_in_a_header_makes_the_same_bytes(tmp_path):

@@ -12,10 +12,12 @@ from oracles import brute_force
 from oracles.worlds import random_experience
 from topomap.model.experience import observe
 from topomap.model.facts import parse
+from topomap.model.query import Query
 from topomap.model.topology import TopologicalMap
 from topomap.runtime.watch import Watch
 from topomap.search.hypothesis import Hypothesis
 from topomap.search.traversal import depth_first
+from topomap.solver.solving import count
 
 CASES = ROOT / "tests/cases"
 KINDS = ("meet_twice", "place_twice", "both_sides")
@@ -93,6 +95,24 @@ def test_the_path_axiom_can_be_taken_away():
     for form in ("", "paper/"):
         assert len(maps(loop, f"{form}topomap")) == 1
         assert len(maps(loop, f"{form}topomap", "no_path_axiom")) == 2
+
+
+@pytest.mark.parametrize(
+    ("parts", "final", "closed"),
+    [
+        ((), 17_416, 0),
+        (("planar",), 36, 0),
+        (("no_path_axiom", "planar"), 162, 0),
+        pytest.param(("no_path_axiom",), 424_639, 8_728, marks=pytest.mark.long),
+    ],
+)
+def test_a_torus(parts, final, closed):
+    """semantics.md, "Without the path axiom": with a compass, at most 9 places."""
+    route = "0,0,0,1,0,0,0,1,0,0,0,1,0,1,1,1,0,1,1,1"
+    seen = topomap.generate("torus", 3, 3, route=route, compass=True).experience
+    asked = Query(frozenset(parts), 9)
+    for query, number in (asked, final), (asked.having("closed"), closed):
+        assert count(seen, query, grown=False)[0] == number
 
 
 @pytest.mark.parametrize("axiom", [True, False])

@@ -15,6 +15,7 @@ from topomap.model.query import Query
 from topomap.model.words import number
 from topomap.runtime.status import INTERRUPT
 from topomap.runtime.watch import Attempt, Stopped, Watch
+from topomap.solver.defaults import in_the_way
 from topomap.solver.enumeration import proved_or_last
 
 CLOSED = "closed"  # why an answer is partial that was not wanted any more
@@ -61,10 +62,12 @@ class Answer(Sequence[Map]):
         limit: int | None = None,
         watch: Watch | None = None,
         waits: bool = True,
+        optimal: bool = False,
     ):
         """The maps that are ``coming``, at most ``limit`` of them, found under a ``watch``. Its
-        time limit ``waits`` while the caller has control; that of a command does not."""
-        self.experience, self.query = experience, query
+        time limit ``waits`` while the caller has control; that of a command does not. They are
+        the ``optimal`` ones, or all."""
+        self.experience, self.query, self._optimal = experience, query, optimal
         self._watch = watch or Watch()
         self._known = _Known(experience, query)
         self._search = _search(self._known, coming, limit, self._watch if waits else None)
@@ -183,6 +186,19 @@ class Answer(Sequence[Map]):
         """What was minimised, most important first; empty if nothing was, or there is no map."""
         last = self._settled().last
         return () if last is None else last.cost
+
+    def in_the_way(self) -> list[str] | None:
+        """Where it is proved that there is no closed map, and closed or optimal ones were asked
+        for: what, if it alone is taken away, lets one through, ``path_axiom``, ``boundary``,
+        ``perpendicular``, ``planar``, ``euler`` or ``bound``. It is found by trying, within a small
+        budget of counted work; what is not named is open. None where the question does not
+        arise. Raises Stopped if a command or its time limit ends that."""
+        kind = self.kind
+        none = kind == "no map" and (self._optimal or "closed" in self.query.parts)
+        if self.fault is not None or not (none or kind == "best so far"):
+            return None
+        self._watch.ended = None  # the search itself has come to its end
+        return in_the_way(self.experience, self.query, self._watch)
 
     @property
     def by(self) -> str | None:

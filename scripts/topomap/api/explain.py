@@ -54,6 +54,12 @@ class Explained(Reply):
         return list(self.explanation.reasons)
 
     @property
+    def in_the_way(self) -> list[str]:
+        """Where there is no map, and a closed one was asked for: what, if it alone is taken away,
+        lets one through, as ``Answer.in_the_way`` has it. There are no reasons then."""
+        return list(self.explanation.in_the_way)
+
+    @property
     def minimal(self) -> bool:
         """Whether it is verified that the reasons are enough, and that none can be spared."""
         return self.explanation.minimal

@@ -244,7 +244,8 @@ def follow(
         count_limit: of more hypotheses it is only told that they are more.
         timeout: seconds that the answer to a step may take.
         drift, stretch: how far shifts and lengths may be wrong, in percent; 10 by default.
-        parts: what the maps are to have: ``planar``.
+        parts: what the maps are to have: ``planar``; and ``no_path_axiom``, that a path may hold a
+            place twice, and may be circular (then each step takes longer).
 
     Returns:
         A follower, to which the first view is told by ``step(view)``, the next ones by
@@ -253,9 +254,10 @@ def follow(
     Raises:
         ValueError: an unknown part, or a number that cannot be.
     """
-    planar = "planar" in asked_of(parts, OnlineParts.__annotations__)
+    asked = asked_of(parts, OnlineParts.__annotations__)
+    planar, path_axiom = "planar" in asked, "no_path_axiom" not in asked
     bound, count_limit = whole_if_given("bound", bound, 1), whole("count_limit", count_limit, 1)
-    following = Following(planar, bound, flag("marker", marker), count_limit)
+    following = Following(planar, bound, flag("marker", marker), count_limit, path_axiom)
     following.record = Record(
         drift=DRIFT if drift is None else whole("drift", drift, 0),
         stretch=STRETCH if stretch is None else whole("stretch", stretch, 0),

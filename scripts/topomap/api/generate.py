@@ -25,8 +25,9 @@ def generate(
     """Explore a world, and note what is seen (the paper, section IV).
 
     Parameters:
-        world: ``grid``, ``torus``, ``cylinder``, ``maze``, ``hexagons`` or ``triangles``, with
-            ``size``, its rows and columns; or an environment that was made before.
+        world: ``grid``, ``torus``, ``cylinder``, ``crescents``, ``maze``, ``hexagons`` or
+            ``triangles``, with ``size``, its rows and columns; or an environment that was made
+            before.
         route: ``snake``, ``walk`` (random), ``tour`` (over every way), compass letters such as
             ``ESSENN``, or absolute slots such as ``0,3,1``.
         steps: cut the route after so many steps, 100,000 at most; a walk needs it.

@@ -45,6 +45,7 @@ class OnlineParts(TypedDict, total=False):
     """What maps are to have that are followed step by step; see ``Parts``."""
 
     planar: bool
+    no_path_axiom: bool
 
 
 def query_of(

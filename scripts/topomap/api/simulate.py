@@ -10,7 +10,7 @@ from topomap.api.parts import Parts, query_of, senses_of, world_of
 from topomap.model.experience import Experience
 from topomap.model.query import Query
 from topomap.model.reply import Reply
-from topomap.model.vocabulary import PRUNING
+from topomap.model.vocabulary import PRUNING, RELAXING
 from topomap.questions.robot import Outcome, start_of
 from topomap.questions.robot import simulate as explored
 from topomap.runtime.checks import flag, seconds, share, whole, whole_if_given
@@ -110,8 +110,9 @@ def simulate(
     best maps apart; then hold these against the truth (the paper, section IV).
 
     Parameters:
-        world: ``grid``, ``torus``, ``cylinder``, ``maze``, ``hexagons`` or ``triangles``, with
-            ``size``, its rows and columns; or an environment that was made before.
+        world: ``grid``, ``torus``, ``cylinder``, ``crescents``, ``maze``, ``hexagons`` or
+            ``triangles``, with ``size``, its rows and columns; or an environment that was made
+            before.
         start: the first place, such as ``0,2``; the smallest by default.
         facing: the gateway stood at first, a slot; the smallest by default.
         signs: the share of places, 0 to 1, that carry their own name as a landmark.
@@ -124,7 +125,8 @@ def simulate(
         compass, odometry, lengths: what it measures besides views, as in ``generate``.
         drift, stretch: how far it takes its shifts and lengths to be wrong, in percent; 10 by
             default, or as much as ``odometry``.
-        parts: what it takes for granted: ``planar``, ``perpendicular``.
+        parts: what it takes for granted: ``planar``, ``perpendicular``; and ``no_path_axiom``, that
+            a path may hold a place twice, and may be circular.
 
     Returns:
         What came of it: ``end``, ``maps``, ``truth``, ``experience``, ``steps``, and for
@@ -133,10 +135,10 @@ def simulate(
     Raises:
         TypeError: something else than a world.
         ValueError: an unknown world or part, no rows and columns, or a number that cannot be.
-        InputError: a world that cannot be mapped, such as a torus, or is too large (more than
-            100,000 places); no such place or gateway.
+        InputError: a world that is too large (more than 100,000 places); no such place or
+            gateway.
     """
-    query = query_of(parts, bound=bound, allowed=PRUNING)
+    query = query_of(parts, bound=bound, allowed=(*PRUNING, *RELAXING))
     thin, signs, seed = share("thin", thin), share("signs", signs), whole("seed", seed, 0)
     steps, facing = (
         whole_if_given("steps", steps, 0, MOST_STEPS),

@@ -95,7 +95,7 @@ def solve(
         with crew_of(jobs) as crew:
             yield from every(experience, query, watch, by, optimal, None, crew, circumscribe, limit)
 
-    return Answer(experience, query, coming(), limit, watch)
+    return Answer(experience, query, coming(), limit, watch, optimal=optimal)
 
 
 def solve_under(
@@ -113,4 +113,4 @@ def solve_under(
     """The same of the maps of a query, under the watch of a command, which may have a journal of
     the work and a crew for it."""
     coming = every(experience, query, watch, by, optimal, journal, crew, circumscribe, limit)
-    return Answer(experience, query, coming, limit, watch, waits=False)
+    return Answer(experience, query, coming, limit, watch, waits=False, optimal=optimal)

@@ -103,6 +103,7 @@ def add_environments(command: Parser, common: Parser, rest: str) -> Any:
         ("grid", "a grid of places, four slots, slot 0 north"),
         ("cylinder", "a grid whose rows are rings"),
         ("torus", "a grid whose rows and columns are rings"),
+        ("crescents", "a grid each two columns of which are joined by a way round their ends"),
         ("maze", "a grid from which ways are taken away at random; it stays connected"),
         ("hexagons", "the corners of a sheet of hexagons, six slots"),
         ("triangles", "a triangular lattice, six slots"),

@@ -24,6 +24,7 @@ def add(group: Any) -> None:
         """\
   topomap follow walk.lp --planar
   topomap follow instances/grid-3x3-snake.lp --no-wait --json
+  topomap follow walk.lp --no-path-axiom
   robot | topomap follow - --log walk.log
 
 lines: the facts of a step, as generate writes them: turn(1,0). view(1,0). view(1,2).
@@ -51,6 +52,7 @@ what is certain: new(T), the place where the agent is after step T was not visit
         "lines already, go on after them",
     )
     add("--planar", action="store_true", help=f"{PARTS['planar']}; of one log only (no start)")
+    add("--no-path-axiom", action="store_true", help=f"{PARTS['no_path_axiom']} (slower)")
     add("--bound", type=number(int, 1), metavar="B", help="at most B places")
     add(
         "--marker",
@@ -85,6 +87,7 @@ def run(args: argparse.Namespace) -> int:
         raise InputError("topomap follow: --log is for standard input; a FILE is its own log")
     follower = follow(
         planar=args.planar,
+        no_path_axiom=args.no_path_axiom,
         bound=args.bound,
         marker=args.marker,
         count_limit=args.count_limit,

@@ -15,7 +15,7 @@ from topomap.cli.arguments import (
 )
 from topomap.cli.calls import environment_of
 from topomap.runtime import formats
-from topomap.runtime.errors import InputError
+from topomap.runtime.errors import InputError, say
 from topomap.runtime.files import output
 from topomap.runtime.limits import MOST_STEPS
 from topomap.runtime.status import DONE
@@ -32,6 +32,7 @@ def add(group: Any) -> None:
         """\
   topomap generate grid 3 4 --route snake -o grid-3x4-snake.lp
   topomap generate torus 3 3 --route walk --steps 20 --seed 1
+  topomap generate crescents 2 4 --route tour
   topomap generate grid 4 4 --route snake --compass --odometry 5 --seed 1
   topomap generate network city.graphml --slots 4 --north 29 --route tour --signs 0.3""",
     )
@@ -65,6 +66,9 @@ def run(args: argparse.Namespace) -> int:
     from topomap.model.found import steps_json
 
     made = instance_of(args)
+    if made.fault:
+        fault = "the environment's own map breaks the path axiom"
+        say(f"{made.name}: {fault}; --no-path-axiom keeps it")
     target = args.output
     if target and (target.endswith("/") or Path(target).is_dir()):
         target = str(Path(target) / f"{made.name}.lp")

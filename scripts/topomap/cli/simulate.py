@@ -18,7 +18,7 @@ from topomap.cli.arguments import (
 )
 from topomap.cli.calls import asked_query, environment_of, senses_of
 from topomap.cli.tell import tell
-from topomap.model.vocabulary import PRUNING
+from topomap.model.vocabulary import PRUNING, RELAXING
 from topomap.runtime import formats
 from topomap.runtime.errors import InputError
 from topomap.runtime.files import output
@@ -30,6 +30,8 @@ if TYPE_CHECKING:
     from topomap.runtime.watch import Watch
     from topomap.worlds.environment import Environment
 
+ALLOWED = (*PRUNING, *RELAXING)  # what can be asked of a robot's maps
+
 
 def add(group: Any) -> None:
     """The parser of ``topomap simulate``."""
@@ -39,6 +41,7 @@ def add(group: Any) -> None:
         """\
   topomap simulate grid 3 3
   topomap simulate maze 4 4 --seed 2 --signs 0.3 --perpendicular
+  topomap simulate torus 3 3 --no-path-axiom --signs 0.5
   topomap simulate network city.graphml --slots 4 --north 29 --signs 0.3 --planar
   topomap simulate list instances/worlds.txt""",
     )
@@ -56,7 +59,7 @@ def add(group: Any) -> None:
     add_measured(common)
     add("--marker", action="store_true", help="the robot carries a marker, and may put it down")
     add("--instance", metavar="FILE", help="also write what the robot did and saw, as an instance")
-    add_asked(common, PRUNING, horizon=False)
+    add_asked(common, ALLOWED, horizon=False)
     add("--json", action="store_true", help="write JSON")
     add("-o", "--output", metavar="FILE", help="file to write (default: stdout)")
     kinds = add_environments(made, common, "--signs 0.3")
@@ -95,7 +98,7 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _environment(args: argparse.Namespace) -> "Environment":
-    """The environment of a call. Raises InputError where it cannot be mapped."""
+    """The environment of a call. Raises InputError where there is none, or no such start."""
     from topomap.questions.robot import start_of
 
     environment = environment_of(args)
@@ -110,7 +113,7 @@ def _simulated(
 ) -> "Simulation":
     from topomap.api.simulate import simulate_under
 
-    query = asked_query(args, PRUNING)
+    query = asked_query(args, ALLOWED)
     how = args.start, args.facing, args.steps, args.marker, senses_of(args)
     return simulate_under(watch, environment, query, *how)
 
@@ -146,7 +149,7 @@ def _list(args: argparse.Namespace) -> int:
 
 def _calls(args: argparse.Namespace) -> "Iterator[tuple[str, argparse.Namespace, Environment]]":
     """The lines of the file, parsed, each with its environment. Raises InputError naming the line
-    that is no call, or of a world that cannot be mapped."""
+    that is no call, or of a start that is not there."""
     from topomap.cli import parse
     from topomap.worlds.family import expand
 

@@ -141,8 +141,11 @@ def _solve_one(
         with Attempt() as attempt:
             for one in answer.stream():
                 report.add(one.found)
-        fault = attempt.fault or answer.fault
-        report.end(fault, by=answer.by, least=answer.least)
+        fault, way = attempt.fault or answer.fault, None
+        if fault is None:
+            with Attempt():  # if it is cut, nothing is claimed
+                way = answer.in_the_way()
+        report.end(fault, by=answer.by, least=answer.least, way=way)
     return fault, bool(report.count)
 
 

@@ -12,6 +12,7 @@ from topomap.model.found import BEST, UNPROVED, Found, steps_json
 from topomap.model.query import Query
 from topomap.model.topology import Gateway, TopologicalMap
 from topomap.runtime import formats
+from topomap.solver import defaults
 
 
 def map_json(world: TopologicalMap, at: Sequence[Gateway]) -> dict[str, Any]:
@@ -68,11 +69,12 @@ def _line(size: tuple[int, int, int, int, int], way: str) -> str:
 
 
 class Texts:
-    """The maps of one experience as text; what is the same in many of them is made once."""
+    """The maps of one experience as text, with or without the path axiom; what is the same in many
+    of them is made once."""
 
     def __init__(self, experience: Experience, path_axiom: bool = True):
         self._experience = experience
-        self._numbering = Numbering(experience, circular=not path_axiom)
+        self._numbering = Numbering(experience, path_axiom)
         self._names: dict[DState, str] = {}  # of a dstate, in a line
         slots = experience.slots
         self._gateways = [  # by number, as JSON
@@ -207,10 +209,12 @@ class Report:
         nodes: int | None = None,
         by: str | None = None,
         least: tuple[int, ...] | None = None,
+        way: Sequence[str] | None = None,
     ) -> None:
         """Write what the maps are, and whether they are all; ``nodes`` were searched. Where they
         may not be all, nothing is said of those that were not found, but what each map costs at
-        ``least``, if that is proved. ``by`` is the way that gave them."""
+        ``least``, if that is proved. ``by`` is the way that gave them. Where no map is
+        closed, ``way`` is what stands in the way of one, as ``defaults.in_the_way`` has it."""
         if self.as_json:
             kind = self.last.kind if self.count or not fault else None
             tail: dict[str, Any] = {"kind": kind, "count": self.count}
@@ -222,6 +226,8 @@ class Report:
                 tail["nodes"] = nodes
             if by is not None:
                 tail["by"] = by
+            if way is not None:
+                tail["in_the_way"] = way
             tail |= formats.ended(fault)
             self.out.write("\n], " + json.dumps(tail)[1:] + "\n")
             return
@@ -244,3 +250,5 @@ class Report:
         if self.truth and not self.real and (self.count or not fault):
             line += f", the real map is not among {'those found so far' if fault else 'them'}"
         self.out.write(line + (f"; partial: {fault}\n" if fault else "\n"))
+        if way:
+            self.out.write(f"{defaults.told(way)}\n")

@@ -22,6 +22,7 @@ from topomap.runtime import files, formats
 from topomap.runtime.errors import InputError
 from topomap.runtime.files import read_text
 from topomap.runtime.limits import LARGEST
+from topomap.solver.defaults import WORDS
 from topomap.solver.solving import misreadings
 
 MOST_BYTES_OF_MAPS = 2**32
@@ -178,6 +179,7 @@ CLAIMS: dict[str, Callable[[Any], bool]] = {
     "nodes": lambda value: is_number(value) and value > 0,
     "least": _is_list_of(is_number),
     "by": lambda value: value in ("clingo", "search"),
+    "in_the_way": _is_list_of(lambda name: isinstance(name, str) and name in WORDS),
     "complete": _is_truth,
     "fault": _is_text,
 }

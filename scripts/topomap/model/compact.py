@@ -15,10 +15,10 @@ Number = int
 
 class Numbering:
     """What all maps of one experience have in common. Each step of these arrives at a gateway that
-    is seen there."""
+    is seen there. With the path axiom no path is circular, which spares work."""
 
-    def __init__(self, experience: Experience, circular: bool = False):
-        self.circular = circular  # whether a path may be
+    def __init__(self, experience: Experience, path_axiom: bool = True):
+        self.path_axiom = path_axiom
         self.slots = slots = experience.slots
         self.experience, self.turns = experience, experience.turns
         self.parted = experience.parted
@@ -87,18 +87,12 @@ class CompactMap:
         return [gateway for place in self.places for gateway in every[place]]
 
     def number_of_paths(self) -> int:
-        """How many paths there are. Unless it makes a path circular, each link makes two paths one,
-        so there are as many as there are axes, less the links, but for those that are circular."""
+        """How many paths there are. Where no path is circular, each link makes two paths one, so
+        there are as many as there are axes, less the links."""
+        if not self._all.path_axiom:
+            return len(self.paths())
         axes = self._all.axes
-        many = sum([axes[place] for place in self.places]) - len(self.link) // 2
-        return many + self._circular() if self._all.circular else many
-
-    def _circular(self) -> int:
-        """How many paths are circular: those that have no end."""
-        link, opposite = self.link, self._all.opposite
-        return sum(
-            link.get(path[-1]) == opposite[path[0]] and path[-1] in link for path in self.paths()
-        )
+        return sum([axes[place] for place in self.places]) - len(self.link) // 2
 
     def number_of_pending(self) -> int:
         """How many gateways have no link."""

@@ -3,7 +3,8 @@
 ``encodings/explain.lp`` makes each thing that a rule forbids a reason that may be given up. Of
 the shortest beginning of the experience in which it is so already, those reasons are sought
 without any one of which it would not be so: whole kinds of rules are spared first, then one
-reason after the other, in several orders, of which the smallest answer is kept.
+reason after the other, in several orders, of which the smallest answer is kept. Where no map is
+closed, and a default stands in the way (``defaults.in_the_way``), that is said, and no reasons.
 """
 
 from collections import Counter
@@ -36,6 +37,7 @@ from topomap.questions.reasons import (
 from topomap.questions.statements import Statement
 from topomap.runtime.status import INTERRUPT
 from topomap.runtime.watch import Stopped, Watch
+from topomap.solver import defaults
 from topomap.solver.programs import Program, calls, forget
 from topomap.solver.threads import Put
 
@@ -93,13 +95,14 @@ class Reason:
 
 @dataclass
 class Explanation:
-    """What is found: the verdict, and the reasons for it in the first ``horizon`` steps; or maps
-    in which the statement holds and does not."""
+    """What is found: the verdict, and the reasons for it in the first ``horizon`` steps, or what is
+    ``in_the_way`` of a closed map; or maps in which the statement holds and does not."""
 
     verdict: str | None = None
     horizon: int | None = None
     reasons: list[Reason] = field(default_factory=list)
     minimal: bool = False
+    in_the_way: list[str] = field(default_factory=list)
     maps: dict[bool, tuple[DState, ...]] = field(default_factory=dict)
 
     def lines(
@@ -116,12 +119,15 @@ class Explanation:
                 does = "" if not statement else f" in which it {'holds' if holds else 'does not'}"
                 yield f"  a map{does}: {map_line(experience, Found(at, 'consistent'))}"
         else:
+            if self.in_the_way:
+                yield defaults.told(self.in_the_way)
             yield f"{head}{VERDICTS[self.verdict]}" + self._where(experience)
             if statement and statement.note and self.verdict != "no map":
                 yield f"  {statement.note}"
             for reason in self.reasons:
                 yield from reason.lines()
-            yield self._sum()
+            if not self.in_the_way:
+                yield self._sum()
         if fault:
             yield f"partial: {fault}"
 
@@ -159,6 +165,7 @@ class Explanation:
             "horizon": self.horizon,
             "reasons": [reason.document() for reason in self.reasons],
             "minimal": self.minimal or None,
+            "in_the_way": self.in_the_way,
             "witness": steps_json(maps.get(True, ())),
             "counter": steps_json(maps.get(False, ())),
         }
@@ -192,6 +199,11 @@ class Explainer:
         self.watch.title("is there a map")
         if self.term is None or self.seen:  # what was seen is no rule that can be spared
             cut = self._beginning(None)
+            if cut and "closed" in cut[1].parts:
+                answer.verdict, answer.horizon = "no map", cut[0]
+                answer.in_the_way = defaults.in_the_way(self.experience, self.query, self.watch)
+                if answer.in_the_way:
+                    return
             verdict = "open" if self.term is None else "impossible" if self.positive else "certain"
             self._conclude(verdict if cut is None else "no map", None, cut)
             if self.seen and cut is None:

@@ -98,8 +98,8 @@ class StepAnswer:
 
 class Following:
     """An experience that goes on, or is taken back, as its record says; and what is certain
-    after each step. ``marker``: the agent carries one; of more than ``most`` hypotheses it is
-    only told that they are more."""
+    after each step, with or without the ``path_axiom``. ``marker``: the agent carries one; of
+    more than ``most`` hypotheses it is only told that they are more."""
 
     def __init__(
         self,
@@ -107,8 +107,10 @@ class Following:
         bound: int | None = None,
         marker: bool = False,
         most: int = MOST_COUNTED,
+        path_axiom: bool = True,
     ):
         self.planar, self.bound, self.marker, self.most = planar, bound, marker, most
+        self.path_axiom = path_axiom
         self.record = Record(one_log=planar)
         self.solver: OnlineSolver | None = None
         self._certain: list[Certain] = []  # by steps
@@ -138,7 +140,8 @@ class Following:
             record = self.record
             assert record.slots is not None
             limits = self.planar, self.bound, self.most
-            self.solver = OnlineSolver(record.slots, step, *limits, record.drift, record.stretch)
+            measured = record.drift, record.stretch
+            self.solver = OnlineSolver(record.slots, step, *limits, *measured, self.path_axiom)
         else:
             self.solver.step(step)
 

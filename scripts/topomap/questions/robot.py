@@ -2,7 +2,9 @@
 
 It thinks of the best maps of what it has seen (``solving.best``), walks what ``explore`` plans
 for them, and stops when the best map is closed and the only one, or when no walk can tell the
-best ones apart.
+best ones apart. But a closed map that has exceptions to consistent boundaries is often false: one
+that is small explains much. So, before it believes one, the robot walks what is planned for the
+maps without exceptions, until they are all too large (``rivals``).
 """
 
 import contextlib
@@ -30,6 +32,7 @@ from topomap.worlds.senses import Senses
 from topomap.worlds.tours import tour as tour_of
 
 MOST_MAPS = 100  # best maps of which a walk is planned, while none is closed
+LARGER = 50  # percent more places than a closed map with exceptions may a map without any have
 WALKS = 101  # random walks, of which the median is told
 ENDED = ("settled", "bisimilar", "no map")  # the ways to end that are no limit
 ENDS = {
@@ -51,7 +54,7 @@ class Outcome:
     ``maps`` are the best maps of the end; ``truth`` says whether the hypothesis that is so is
     among them, and its map the whole world; None where that is open: the robot could go no
     further, or there may be more best maps than were kept. ``whole`` tells whether the best maps
-    are all that there are.
+    are all that there are. ``query`` is what was taken for granted of them.
     """
 
     world: TopologicalMap
@@ -62,6 +65,7 @@ class Outcome:
     truth: bool | None
     others: "Others"
     whole: bool
+    query: Query
 
     @property
     def steps(self) -> int:
@@ -109,8 +113,11 @@ class Outcome:
         signs = number(len(world.landmarks), "sign")
         yield f"{name}: {number(len(world.stars), 'place')}, {number(ways, 'way')}, {signs}"
         yield f"{number(self.steps, 'step')} walked: {self._end()}"
-        if not world.boundaries_consistent():
-            yield "the truth has inconsistent boundaries, and so is never optimal"
+        fault = world.path_axiom_fault()
+        if fault and "no_path_axiom" not in self.query.parts:
+            yield f"the truth breaks the path axiom, and so is no map: {fault}; --no-path-axiom"
+        elif breaks := sum(1 for _ in world.exceptions()):
+            yield f"the truth has {number(breaks, 'exception')} to consistent boundaries"
         so_far = " so far" * (self.end not in ENDED)
         if self.maps and self.truth is None:
             many = number(len(self.maps), "best map")
@@ -176,33 +183,26 @@ def start_of(
     environment: Environment, place: str | None = None, facing: int | None = None
 ) -> tuple[Environment, Gateway]:
     """What can be walked to in an environment from a place (the smallest, unless told), and the
-    gateway there where the robot stands first (the smallest, too). Raises InputError where it
-    cannot be mapped."""
+    gateway there where the robot stands first (the smallest, too). Raises InputError where there
+    is no such place or gateway."""
     stars = environment.map.stars
     start = environment.place(place) if place is not None else min(stars)
     slot = min(stars[start]) if facing is None else facing
     if slot not in stars[start]:
         raise InputError(f"{environment.name}: place {label(start)} has no gateway {slot}")
-    try:
-        return replace(environment, map=reached(environment.map, start)), (start, slot)
-    except InputError as error:
-        raise InputError(f"{environment.name}: {error}") from None
+    return replace(environment, map=reached(environment.map, start)), (start, slot)
 
 
 def reached(world: TopologicalMap, start: Place) -> TopologicalMap:
-    """The part of a world that can be walked to. Raises InputError if it breaks the path axiom:
-    its own map is then not among the maps that are consistent with what is seen there."""
+    """The part of a world that can be walked to."""
     graph = nx.Graph((a[0], b[0]) for a, b in world.edges())
     there = nx.node_connected_component(graph, start)
-    part = TopologicalMap(
+    return TopologicalMap(
         world.slots,
         {place: star for place, star in world.stars.items() if place in there},
         {gateway: end for gateway, end in world.links.items() if gateway[0] in there},
         {place: signs for place, signs in world.landmarks.items() if place in there},
     )
-    if fault := part.path_axiom_fault():
-        raise InputError(f"its own map breaks the path axiom: {fault}; no robot can find it")
-    return part
 
 
 def others(world: TopologicalMap, start: Place, watch: Watch) -> Others:
@@ -300,33 +300,36 @@ def simulate(
         while not end:
             watch.phase(f"step {len(robot.route)}")
             maps = best(robot.experience(), query, watch)
-            end = _go_on(robot, maps, watch, most, marker)
+            end = _go_on(robot, maps, query, watch, most, marker)
     if attempt.fault:
         end = attempt.fault
         maps = [one for one in maps if len(one.at) == len(robot.route) + 1]
     whole = end in ENDED and len(maps) < MOST_MAPS
     truth = robot.mapped(maps) or (False if whole else None)
     told = others(world, start[0], watch)
-    return Outcome(world, start, robot.experience(), tuple(maps), end, truth, told, whole)
+    return Outcome(world, start, robot.experience(), tuple(maps), end, truth, told, whole, query)
 
 
-def _go_on(robot: Robot, maps: Sequence[Found], watch: Watch, most: int, marker: bool) -> str:
-    """Walk what is planned for the best maps, until one of them is refuted or there is something
-    new; or say why not."""
+def _go_on(
+    robot: Robot, maps: Sequence[Found], query: Query, watch: Watch, most: int, marker: bool
+) -> str:
+    """Walk what is planned for the best maps, or for their rivals, until one of them is refuted or
+    there is something new; or say why not."""
     if not maps:
         return "no map"
-    if len(maps) == 1 and maps[0].kind == "optimal":
+    experience = robot.experience()
+    others = rivals(experience, query, maps, watch)
+    if len(maps) == 1 and maps[0].kind == "optimal" and not others:
         return "settled"
     if len(robot.route) == most:
         return "steps"
-    experience = robot.experience()
-    standings = [standing(experience, one.at) for one in maps]
+    standings = [standing(experience, one.at) for one in others or maps]
     carried = marker and not robot.drops
     slots = robot.world.slots
     plan = explore.plan(slots, standings, watch, proofs=False)
     if plan.kind == "bisimilar":
         plan = explore.plan(slots, standings, watch, marker=carried)  # if it stays so, proved
-    if plan.kind in ("settled", "bisimilar"):
+    if plan.kind in ("settled", "bisimilar") and not others:
         return plan.kind
     if not plan.turns:
         return "a walk was not found" if plan.fault in explore.LIMITS else str(plan.fault)
@@ -345,10 +348,29 @@ def _go_on(robot: Robot, maps: Sequence[Found], watch: Watch, most: int, marker:
 
 def best(experience: Experience, query: Query, watch: Watch) -> list[Found]:
     """The optimal maps, or else the best so far, in order; MOST_MAPS of them, if they are more."""
-    found: list[Found] = []
-    for one in filter(None, solving.best(experience, query, watch, choice.hypotheses)):
-        if one.proved:
-            found.append(one)
-            if len(found) == MOST_MAPS:
-                break
-    return sorted(found, key=lambda one: one.at)
+    return _first(solving.best(experience, query, watch, choice.hypotheses))
+
+
+def rivals(
+    experience: Experience, query: Query, maps: Sequence[Found], watch: Watch
+) -> list[Found]:
+    """Where the best maps are closed, and have exceptions: the maps without any, with the fewest
+    paths, then the fewest places, that have at most LARGER percent more places; in order, and
+    MOST_MAPS of them, if they are more. They have pending gateways, so a walk can test them. As
+    long as there are some, the best maps are not believed.
+
+    There is a limit because no walk excludes that each step came to a new place, and such a map
+    mostly has no exceptions. It is less than twice as many places: a map that is the closed one
+    twice over often has none, either, and no walk tells it from that."""
+    if maps[0].kind != "optimal" or not maps[0].cost[0]:
+        return []
+    most = maps[0].cost[-1] * (100 + LARGER) // 100
+    bounded = replace(query, places=min(most, query.places or most))
+    asked = bounded.having("boundary", "minimal")
+    return _first(choice.hypotheses(experience, asked, watch, "best so far"))
+
+
+def _first(coming: Iterator[Found | None]) -> list[Found]:
+    """The best maps, in order; MOST_MAPS of them, if they are more."""
+    proved = (one for one in coming if one and one.proved)
+    return sorted(islice(proved, MOST_MAPS), key=lambda one: one.at)

@@ -9,6 +9,7 @@ a step before.
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from itertools import islice
 from typing import Any
 
 import clingo
@@ -74,9 +75,11 @@ class OnlineSolver:
         most: int = MOST_COUNTED,
         drift: int = DRIFT,
         stretch: int = STRETCH,
+        path_axiom: bool = True,
     ):
         """Begin where the first view was seen; ``drift`` and ``stretch`` tell, in percent, how far
-        shifts and lengths may be wrong."""
+        shifts and lengths may be wrong. Without the ``path_axiom`` the best maps are found anew
+        after each step, as the program does not tell the number of paths then."""
         marked = ([0] * (name in first.marks) for name in MARKER)
         self.experience = Experience(
             slots,
@@ -90,7 +93,8 @@ class OnlineSolver:
             stretch=stretch,
         )
         self.most = most
-        self._query = Query(frozenset(["planar"] if planar else ()), bound)
+        asked = {"planar": planar, "no_path_axiom": not path_axiom}
+        self._query = Query(frozenset(part for part, wanted in asked.items() if wanted), bound)
         self._parts = ["step", *(["planar"] if planar else [])]
         arguments = ["0", "--project", "-c", f"drift={drift}", "-c", f"stretch={stretch}"]
         if bound is not None:
@@ -99,6 +103,8 @@ class OnlineSolver:
         self._control = clingo.Control(arguments)
         self._control.load(str(ENCODINGS / "online.lp"))
         self._control.load(str(ENCODINGS / "online/certain.lp"))
+        if not path_axiom:
+            self._control.load(str(ENCODINGS / "no_path_axiom.lp"))
         self._boundaries = Boundaries(self)
         self._control.register_propagator(self._boundaries)
         self._control.add("base", [], f"online. slots({slots}). #external consistent.")
@@ -232,20 +238,24 @@ class OnlineSolver:
 
         Maps without exceptions to consistent boundaries are looked for step by step. Where all
         closed maps have some, or all maps, the best ones are found anew, of the whole."""
+        if "no_path_axiom" in self._query.parts:
+            return self._anew(watch)
         closed = [(_atom("closed", self.visits[-1]), True)]
         for kind, assumed in (("optimal", closed), ("best so far", [])):
             cost, found = self._best(watch, assumed, consistent=True)
             if found:
                 return kind, (0, *cost), sorted(found)
             if self._best(watch, assumed, consistent=False, most=1)[1]:
-                maps = []
-                for one in best(self.experience, self._query, watch):
-                    if one and one.proved:
-                        maps.append(one)
-                        if len(maps) > MAPS:
-                            break
-                return maps[0].kind, maps[0].cost, sorted(one.at for one in maps)
+                return self._anew(watch)
         return None, (), []
+
+    def _anew(self, watch: Watch) -> tuple[str | None, tuple[int, ...], list[tuple[DState, ...]]]:
+        """The best maps, found from scratch."""
+        proved = (one for one in best(self.experience, self._query, watch) if one and one.proved)
+        maps = [*islice(proved, MAPS + 1)]
+        if not maps:
+            return None, (), []
+        return maps[0].kind, maps[0].cost, sorted(one.at for one in maps)
 
     def _best(
         self,

@@ -1,4 +1,5 @@
-"""Worlds to explore: grids, tori, cylinders, mazes, and lattices of hexagons or triangles.
+"""Worlds to explore: grids, tori, cylinders, crescents, mazes, and lattices of hexagons or
+triangles.
 
 A world is a map whose places count their slots from one common direction, so that a
 slot is a compass direction (slot 0 is north on a grid).
@@ -83,7 +84,9 @@ def world(slots: int, links: Mapping[Gateway, Gateway]) -> TopologicalMap:
 
 def grid(rows: int, columns: int, kind: str = "grid") -> Environment:
     """A grid of places (row, column), four slots, slot 0 north. On a ``cylinder`` each
-    row is a ring, on a ``torus`` each column too."""
+    row is a ring, on a ``torus`` each column too. With ``crescents`` each two columns, from the
+    first one, are joined by a way round their northern ends; so they are one path, which meets
+    each row twice."""
     links: dict[Gateway, Gateway] = {}
     for row in range(rows):
         for column in range(columns):
@@ -96,10 +99,15 @@ def grid(rows: int, columns: int, kind: str = "grid") -> Environment:
                     there = there[0], there[1] % columns
                 if there[0] < rows and there[1] < columns:
                     _link(links, ((row, column), slot), (there, (slot + 2) % 4))
+    moves = _squares(links)
+    for column in range(0, columns - 1, 2) if kind == "crescents" else ():
+        ends = ((0, column), NORTH), ((0, column + 1), NORTH)
+        _link(links, *ends)
+        moves |= {ends[0]: (UNIT, 0), ends[1]: (-UNIT, 0)}
     call = kind, str(rows), str(columns)
     made = world(4, links)
     name = f"{kind}-{rows}x{columns}"
-    return Environment(name, call, made, (rows, columns), (), _squares(links))
+    return Environment(name, call, made, (rows, columns), (), moves)
 
 
 def _squares(links: Iterable[Gateway]) -> dict[Gateway, Move]:
@@ -196,9 +204,9 @@ def _link(links: dict[Gateway, Gateway], a: Gateway, b: Gateway) -> None:
 def environment(
     kind: str, rows: int, columns: int, thin: float = 0.3, seed: int = 0
 ) -> Environment:
-    """The world of a kind: ``grid``, ``cylinder``, ``torus``, ``maze`` (a share ``thin`` of its
-    ways is taken away with the seed), ``hexagons`` or ``triangles``. Raises ValueError on others
-    and on numbers that cannot be, and InputError if it is too large."""
+    """The world of a kind: ``grid``, ``cylinder``, ``torus``, ``crescents``, ``maze`` (a
+    share ``thin`` of its ways is taken away with the seed), ``hexagons`` or ``triangles``. Raises
+    ValueError on others and on numbers that cannot be, and InputError if it is too large."""
     rows, columns = whole("rows", rows, 1), whole("columns", columns, 1)
     thin, seed = share("thin", thin), whole("seed", seed, 0)
     if rows * columns > MOST_PLACES:
@@ -207,7 +215,7 @@ def environment(
         return maze(rows, columns, thin, seed)
     if kind in ("hexagons", "triangles"):
         return lattice(kind, rows, columns)
-    if kind in ("grid", "cylinder", "torus"):
+    if kind in ("grid", "cylinder", "torus", "crescents"):
         return grid(rows, columns, kind)
-    kinds = "grid, cylinder, torus, maze, hexagons, triangles"
+    kinds = "grid, cylinder, torus, crescents, maze, hexagons, triangles"
     raise ValueError(f"{kind!r} is not one of the environments {kinds}")

@@ -23,12 +23,13 @@ NOTHING = Senses()
 @dataclass(frozen=True)
 class Instance:
     """An exploration of an environment: its name, how it was made, what was seen, and
-    the true hypothesis."""
+    the true hypothesis; and how the environment's own map breaks the path axiom, if it does."""
 
     name: str
     header: tuple[str, ...]
     experience: Experience
     truth: tuple[DState, ...]
+    fault: str | None = None
 
     def text(self) -> str:
         """The instance file."""
@@ -117,7 +118,7 @@ def instance(
         header.append(f"the environment's own map breaks the path axiom: {fault}")
     header.append("made by: " + shlex.join(call))
     seen, truth = measured(environment, (first, facing), taken, senses)
-    return Instance(title, tuple(header), seen, truth)
+    return Instance(title, tuple(header), seen, truth, fault)
 
 
 def measured(

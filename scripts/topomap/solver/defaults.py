@@ -1,0 +1,89 @@
+"""Which default of the theory, or which part that was asked for, stands in the way of a closed map:
+each alone is taken away, and a closed map is looked for, within a small budget of counted work."""
+
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+
+import clingo
+
+from topomap.model.experience import Experience
+from topomap.model.query import Query
+from topomap.runtime.watch import Watch
+from topomap.solver.programs import Program, calls
+from topomap.solver.threads import Put
+
+# The budget, for each thing that is taken away: so many conflicts of clingo, and no more pairs of
+# visits that look alike, by which the ground program grows.
+CONFLICTS, PAIRS = 2_000, 1_000
+PATH_AXIOM, BOUND = "path_axiom", "bound"
+# What is taken away, as it is called in words, with the option that does so, or that is left out.
+WORDS = {
+    PATH_AXIOM: "the path axiom there is one: --no-path-axiom",
+    "boundary": "--boundary there is one",
+    "perpendicular": "--perpendicular there is one",
+    "planar": "--planar there is one",
+    "euler": "--euler there is one",
+    BOUND: "--bound there is one",
+}
+
+
+def in_the_way(experience: Experience, query: Query, watch: Watch) -> list[str]:
+    """Of a query that has no closed map: what, if it alone is taken away, lets one through. Only
+    what is proved is named; where the budget ends before, nothing is said.
+
+    Parameters:
+        experience, query: what was seen and done, and what was asked for; no more is proved for the
+            query than that it has no closed map.
+        watch: what may end the work, with Stopped.
+
+    Returns:
+        Keys of WORDS, in that order. None of them where views may be wrong, where the paper's rules
+        were asked for, or where too many visits look alike to be grounded in a moment.
+    """
+    seen = experience if query.horizon is None else experience.cut(query.horizon)
+    alike = Counter(map(len, seen.views)).values()
+    many = sum(number * (number - 1) // 2 for number in alike) > PAIRS
+    if query.noise is not None or query.encoding != "work" or many:
+        return []
+    asked = replace(query, parts=query.parts - {"minimal", "exceptions", "genus"})
+    watch.phase("what stands in the way of a closed map")
+    return [
+        name
+        for name, other in _taken_away(asked.having("closed"))
+        if _has_map(experience, other, watch)
+    ]
+
+
+def told(names: Sequence[str]) -> str:
+    """What stands in the way, in one line to read; there is something."""
+    return "; ".join(["no closed map", *(f"without {WORDS[name]}" for name in names)])
+
+
+def _taken_away(query: Query) -> Iterator[tuple[str, Query]]:
+    if "no_path_axiom" not in query.parts:
+        yield PATH_AXIOM, query.having("no_path_axiom")
+    for part in ("boundary", "perpendicular", "planar", "euler"):
+        if part in query.parts:
+            yield part, replace(query, parts=query.parts - {part})
+    if query.places is not None:
+        yield BOUND, replace(query, places=None)
+
+
+def _has_map(experience: Experience, query: Query, watch: Watch) -> bool:
+    """Whether a map of a query was found within the budget."""
+    found: list[bool] = []
+
+    def take(_: clingo.Model) -> bool:
+        found.append(True)
+        return False
+
+    def work(program: Program, put: Put) -> None:
+        solve = program.control.configuration.solve
+        solve.solve_limit = f"{CONFLICTS},umax"  # type: ignore[union-attr]
+        program.solve((), on_model=take)
+        put(True)
+
+    for _ in calls(experience, query, "", watch, work):
+        pass
+    return bool(found)
