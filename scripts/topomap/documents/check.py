@@ -159,8 +159,8 @@ def _off(experience: Experience, slots: int) -> bool:
 
 
 def _gateway_seen(experience: Experience, step: int, slot: int, stands: Gateway) -> Gateway | None:
-    """The gateway of the place, where the agent stands after a step, that it sees in this slot; None
-    if there is none."""
+    """The gateway of the place where the agent stands after a step that it sees in this slot, if
+    any."""
     place, base = stands
     if not experience.tolerance:
         return place, (base + slot) % experience.slots
