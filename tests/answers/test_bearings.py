@@ -7,11 +7,13 @@ import pytest
 import topomap
 from answers.test_knowledge import ahead, searched
 from conftest import PARTS, ROOT, TRIED, Truth, answers, forms
-from oracles.brute_force import Hypothesis, tree
-from oracles.worlds import bent
+from oracles.brute_force import Hypothesis, certain, tree
+from oracles.worlds import bent, told
 from topomap.model.experience import Experience
 from topomap.model.facts import parse
 from topomap.runtime.errors import InputError
+from topomap.runtime.watch import Watch
+from topomap.solver.online import OnlineSolver
 
 
 def agree(seen):
@@ -126,3 +128,47 @@ def test_pairs_that_cannot_be(facts, said):
         parse(text + facts, "name")
     assert str(told.value).startswith("name:1: step")
     assert said in str(told.value)
+
+
+@pytest.mark.parametrize("block", range(2))
+def test_step_by_step(block):
+    """After each step the hypotheses are those of the beginning so far; what is taken back leaves
+    no trace."""
+    for number in range(20):
+        draw = random.Random(f"bent online {block}/{number}")
+        seen = bent(draw, 6)
+        levels = Truth(seen).levels
+        measured = seen.drift, seen.stretch, seen.tolerance
+        follower = OnlineSolver(seen.slots, told(seen, 0), False, None, 10_000, *measured)
+        step = 0
+        while step < seen.steps:
+            if step and draw.random() < 0.2:
+                follower.undo()
+                step -= 1
+                continue
+            step += 1
+            follower.step(told(seen, step))
+            assert follower.experience == seen.cut(step)
+            status = follower.status(Watch(None))
+            assert status.hypotheses == len(levels[step]), seen.facts()
+            known = certain(levels[step]) if levels[step] else (set(), set())
+            assert (status.certain.same, status.certain.new) == known, seen.facts()
+            best = Truth(seen.cut(step))
+            wanted = best.best(True) or best.best(False)
+            assert {*status.best} == wanted or not status.all_best, seen.facts()
+
+
+def test_lines_of_a_follower():
+    """Pairs of gateways are told in facts or in JSON, from the first view on or not at all."""
+    follower = topomap.follow(6, tolerance=1)
+    follower.step([0, 2], straight=[(0, 2)])
+    status = follower.step([0, 3], 2, straight=[(0, 3)])
+    assert follower.record.steps[1].straight == {(0, 3)}
+    assert status.hypotheses == 1
+    assert follower.step([0, 2], 0, straight=[]).hypotheses == 0  # no gateway goes on there
+    with pytest.raises(ValueError, match="gateway 0 is in more than one pair"):
+        follower.step([0, 1, 2], 2, straight=[(0, 1), (2, 0)])
+    other = topomap.follow(4)
+    other.step([0, 1])
+    with pytest.raises(ValueError, match="from step 0 on, or not at all"):
+        other.step([0, 1], 0, straight=[(0, 1)])

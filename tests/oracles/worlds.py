@@ -334,6 +334,7 @@ def told(experience, step):
         known["length"] = experience.lengths[step - 1] if experience.lengths else None
     turn = experience.turns[step - 1] if step else None
     known |= {"start": step in experience.starts, "look": step in experience.looks}
+    known["straight"] = experience.straight[step] if experience.straight else None
     known["things"] = frozenset((kind, name) for kind, at, name in experience.things if at == step)
     seen = experience.views[step], experience.landmarks[step], marks(experience, step)
     return Step(turn, *seen, **known, **pairs)

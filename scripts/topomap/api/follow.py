@@ -151,6 +151,7 @@ class Follower:
         length: int | None = None,
         same: Iterable[int] = (),
         apart: Iterable[int] = (),
+        straight: Iterable[tuple[int, int]] | None = None,
         start: bool = False,
         look: bool = False,
         watch: Watch | None = None,
@@ -169,6 +170,8 @@ class Follower:
             shift: how far this step moved the agent, as (x, y), in whole numbers of any unit.
             length: how long this step was, in whole units.
             same, apart: earlier steps after which the agent was at this place, or at another one.
+            straight: the pairs of slots of the view whose gateways are on one path; None if pairs
+                are not told, as they must be from the first view on, or not at all.
             start: whether a new log of the same world begins here; then there is no turn.
             look: whether it is no travel but a second look; then there is no turn.
             watch: that of a command; then the time limit is not used.
@@ -190,6 +193,9 @@ class Follower:
         data |= {name: integer(name, one) for name, one in known.items() if one is not None}
         if shift is not None:
             data["shift"] = [integer("shift", one) for one in collection("shift", shift)]
+        if straight is not None:
+            pairs = [collection("straight", pair) for pair in collection("straight", straight)]
+            data["straight"] = [[integer("straight", slot) for slot in pair] for pair in pairs]
         lists = {"same": same, "apart": apart}
         data |= {
             name: [integer(name, one) for one in given]
@@ -232,6 +238,7 @@ def follow(
     timeout: float | None = None,
     drift: int | None = None,
     stretch: int | None = None,
+    tolerance: int | None = None,
     **parts: Unpack[OnlineParts],
 ) -> Follower:
     """Follow an exploration as it happens (the hypotheses and the best maps are those of the
@@ -244,6 +251,7 @@ def follow(
         count_limit: of more hypotheses it is only told that they are more.
         timeout: seconds that the answer to a step may take.
         drift, stretch: how far shifts and lengths may be wrong, in percent; 10 by default.
+        tolerance: by how many slots bearings may be wrong; 0 by default.
         parts: what the maps are to have: ``planar``; and ``no_path_axiom``, that a path may hold a
             place twice, and may be circular (then each step takes longer).
 
@@ -261,6 +269,7 @@ def follow(
     following.record = Record(
         drift=DRIFT if drift is None else whole("drift", drift, 0),
         stretch=STRETCH if stretch is None else whole("stretch", stretch, 0),
+        tolerance=0 if tolerance is None else whole("tolerance", tolerance, 0),
         one_log=planar,
     )
     if slots is not None:

@@ -182,7 +182,12 @@ def add_known(command: Parser) -> None:
         "'places < 12', as in topomap ask --help; can be given several times",
     )
     add_measured(command)
-    add(
+    add_tolerance(command)
+
+
+def add_tolerance(command: Parser) -> None:
+    """How far bearings may be wrong."""
+    command.add_argument(
         "--tolerance",
         type=number(int, 0),
         metavar="N",

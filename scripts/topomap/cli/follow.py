@@ -4,7 +4,7 @@ import argparse
 import time
 from typing import TYPE_CHECKING, Any
 
-from topomap.cli.arguments import add_measured, command, number
+from topomap.cli.arguments import add_measured, add_tolerance, command, number
 from topomap.model.vocabulary import PARTS
 from topomap.runtime import formats
 from topomap.runtime.errors import InputError, say
@@ -67,6 +67,7 @@ what is certain: new(T), the place where the agent is after step T was not visit
         help="if there are more than N hypotheses, say only that (default: %(default)s)",
     )
     add_measured(made)
+    add_tolerance(made)
     add("--timeout", type=number(float, 0.001), metavar="S", help="at most S seconds for each step")
     add(
         "--keep-going",
@@ -93,6 +94,7 @@ def run(args: argparse.Namespace) -> int:
         count_limit=args.count_limit,
         drift=args.drift,
         stretch=args.stretch,
+        tolerance=args.tolerance,
     )
     log = Log(args.log) if args.log is not None else None
     source = "standard input" if args.file == "-" else args.file

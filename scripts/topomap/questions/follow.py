@@ -140,7 +140,7 @@ class Following:
             record = self.record
             assert record.slots is not None
             limits = self.planar, self.bound, self.most
-            measured = record.drift, record.stretch
+            measured = record.drift, record.stretch, record.tolerance
             self.solver = OnlineSolver(record.slots, step, *limits, *measured, self.path_axiom)
         else:
             self.solver.step(step)
@@ -154,7 +154,8 @@ class Following:
         status = self.solver.status(watch)
         before = self._certain[-1] if self._certain else Certain()
         following, fault = None, status.fault
-        if status.best and not fault:
+        # What maps predict is exact, and so tells nothing where bearings are not.
+        if status.best and not fault and not experience.tolerance:
             following, fault = self._plan(experience, status, watch)
         certain = before if status.certain is None else status.certain
         self._certain += [before] * (status.step - len(self._certain))

@@ -34,6 +34,7 @@ KNOWN_KEYS = {  # of a step in JSON, with what each wants
     "length": "a whole number",
     "same": "a list of steps",
     "apart": "a list of steps",
+    "straight": "a list of pairs of slots",
 }
 _UNDO = re.compile(r"undo(?:\(\s*([0-9]{1,9})\s*\))?\s*\.\s*(?:%.*)?", re.ASCII | re.DOTALL)
 
@@ -50,6 +51,7 @@ class Record:
     steps: tuple[Step, ...] = ()
     drift: int = DRIFT
     stretch: int = STRETCH
+    tolerance: int = 0
     one_log: bool = False  # whether no new log may begin
 
     def lack(self) -> str | None:
@@ -65,6 +67,10 @@ class Record:
             return f"step {step}: no view"
         if 0 not in last.view:
             return f"step {step}: the view lacks slot 0, the gateway where the agent stands"
+        for one, other in sorted(last.straight or ()):
+            if not {one, other} <= last.view:
+                slot = one if one not in last.view else other
+                return f"step {step}: straight({step},{one},{other}): no gateway in slot {slot}"
         return None
 
     def whole(self) -> tuple[Step, ...]:
@@ -114,6 +120,8 @@ class Record:
             return self._known(first, name, *numbers)
         if name == "shift":
             return self._known(first, name, numbers)
+        if name == "straight":
+            return self._on_one_path(first, *numbers)
         return self._seen(first, landmark=str(arguments[1]))
 
     def _marked(self) -> "Record":
@@ -194,6 +202,25 @@ class Record:
         known = record.steps[step]
         changed: dict[str, Any] = {name: getattr(known, name) | {earlier}}
         return replace(record, steps=(*record.steps[:step], replace(known, **changed)))
+
+    def _on_one_path(self, step: int, one: int, other: int) -> "Record":
+        """The record with two gateways of a visit that are on one path, or with one that ends its
+        path, which is told as a pair with itself."""
+        record = self._seen(step)
+        assert record.slots is not None
+        if step and record.steps[0].straight is None:
+            said = "which gateways are on one path is told from step 0 on, or not at all"
+            raise LineFault(f"step {step}: {said}")
+        known = record.steps[step]
+        pairs = known.straight or frozenset()
+        for slot in (one, other):
+            if not 0 <= slot < record.slots:
+                raise LineFault(f"step {step}: slot {slot} is not in 0..{record.slots - 1}")
+            if any(slot in pair and pair != (min(one, other), max(one, other)) for pair in pairs):
+                raise LineFault(f"step {step}: gateway {slot} is in more than one pair")
+        if one != other:
+            pairs |= {(min(one, other), max(one, other))}
+        return replace(record, steps=(*record.steps[:step], replace(known, straight=pairs)))
 
     def _measured(self) -> "Record":
         """The record, if clingo's numbers hold what comes of its shifts and lengths."""
@@ -313,6 +340,10 @@ class Record:
             value: Any = data.get(name)
             if name in data and not _fits(name, value):
                 raise LineFault(f"{name}: {KNOWN_KEYS[name]} is wanted")
+            if name == "straight" and name in data:
+                for pair in value or [[0, 0]]:  # none: gateway 0 ends its path, as all do
+                    record = record._on_one_path(step, *pair)
+                continue
             for other in value or () if name in PAIRS else ():
                 if other > step:
                     raise LineFault(f"{name}: step {other} is later than step {step}")
@@ -345,6 +376,9 @@ def _fits(name: str, value: Any) -> bool:
     """Whether a value of a JSON object is what such a key wants."""
     if name in ("compass", "length"):
         return is_number(value)
+    if name == "straight":
+        pairs = value if isinstance(value, list) else [0]
+        return all(isinstance(one, list) and _fits("shift", one) for one in pairs)
     whole = isinstance(value, list) and all(
         isinstance(one, int) and not isinstance(one, bool) for one in value
     )

@@ -75,11 +75,16 @@ class OnlineSolver:
         most: int = MOST_COUNTED,
         drift: int = DRIFT,
         stretch: int = STRETCH,
+        tolerance: int = 0,
         path_axiom: bool = True,
     ):
         """Begin where the first view was seen; ``drift`` and ``stretch`` tell, in percent, how far
-        shifts and lengths may be wrong. Without the ``path_axiom`` the best maps are found anew
-        after each step, as the program does not tell the number of paths then."""
+        shifts and lengths may be wrong, and ``tolerance``, in slots, how far bearings may be.
+
+        Without the ``path_axiom``, or where it is told which gateways are on one path, the best
+        maps are found anew after each step, as the program does not tell the number of paths then,
+        or what is left and right of them. Where bearings are not exact, there is no program: the
+        hypotheses are those of the search."""
         marked = ([0] * (name in first.marks) for name in MARKER)
         self.experience = Experience(
             slots,
@@ -91,6 +96,8 @@ class OnlineSolver:
             things=[(kind, 0, name) for kind, name in first.things],
             drift=drift,
             stretch=stretch,
+            tolerance=tolerance,
+            straight=[] if first.straight is None else [first.straight],
         )
         self.most = most
         asked = {"planar": planar, "no_path_axiom": not path_axiom}
@@ -107,7 +114,8 @@ class OnlineSolver:
             self._control.load(str(ENCODINGS / "no_path_axiom.lp"))
         self._boundaries = Boundaries(self)
         self._control.register_propagator(self._boundaries)
-        self._control.add("base", [], f"online. slots({slots}). #external consistent.")
+        told = "straight_told. " * bool(self.experience.straight)
+        self._control.add("base", [], f"online. slots({slots}). {told}#external consistent.")
         self.visits: list[int] = []  # the number of each step in the program
         self._numbered = 0
         self._level: list[tuple[int, ...]] = [(0,)]  # the hypotheses after some step
@@ -135,6 +143,10 @@ class OnlineSolver:
 
     def _ground(self, told: Sequence[str], *parts: tuple[str, list[clingo.Symbol]]) -> None:
         visit, step = self._numbered, self.experience.steps
+        if self.experience.tolerance:
+            self.visits.append(visit)
+            self._numbered += 1
+            return
         facts = [*self.experience.facts_of(step, visit), *told]
         if step:
             facts.append(f"after({visit},{self.visits[-1]}).")
@@ -148,7 +160,7 @@ class OnlineSolver:
         """Take the last steps back; there are as many."""
         left = self.experience.steps - steps
         self.experience = self.experience.cut(left)
-        for visit in self.visits[left + 1 :]:
+        for visit in self.visits[left + 1 :] if not self.experience.tolerance else ():
             self._control.release_external(_atom("active", visit))
         del self.visits[left + 1 :]
         if len(self._level[0]) > left + 1:
@@ -167,7 +179,9 @@ class OnlineSolver:
             certain = self.certain(watch)
             known = replace(known, certain=certain)
             number, exact = self.count(watch)
-            if not certain.new and self._none is None:  # where a step begins is always new
+            if (
+                certain and not certain.new and self._none is None
+            ):  # where a step begins is always new
                 self._none, number, exact = known.step, 0, True
             if number >= 0:
                 known = replace(known, hypotheses=number, exact=exact, none_since=self._none)
@@ -238,7 +252,8 @@ class OnlineSolver:
 
         Maps without exceptions to consistent boundaries are looked for step by step. Where all
         closed maps have some, or all maps, the best ones are found anew, of the whole."""
-        if "no_path_axiom" in self._query.parts:
+        seen = self.experience
+        if "no_path_axiom" in self._query.parts or seen.straight or seen.tolerance:
             return self._anew(watch)
         closed = [(_atom("closed", self.visits[-1]), True)]
         for kind, assumed in (("optimal", closed), ("best so far", [])):
@@ -283,8 +298,12 @@ class OnlineSolver:
             self._control.assign_external(_atom("consistent"), False)
         return tuple(cost), found
 
-    def certain(self, watch: Watch) -> Certain:
-        """What holds in all hypotheses; nothing, if there is none."""
+    def certain(self, watch: Watch) -> Certain | None:
+        """What holds in all hypotheses; nothing, if there is none. None where there is no program,
+        and the search has not found all of them, because they are too many."""
+        if self.experience.tolerance:
+            _, exact = self.count(watch)
+            return self._certain_of(self._level) if exact else None
         atoms: list[clingo.Symbol] = []
 
         def take(model: clingo.Model) -> bool:
@@ -309,6 +328,34 @@ class OnlineSolver:
                 first[there] = min(first.get(there, (here, numbers[2])), (here, numbers[2]))
         return Certain(frozenset(same), frozenset(new), frozenset(self._linked(first)))
 
+    def _certain_of(self, hypotheses: Sequence[tuple[int, ...]]) -> Certain:
+        """The same of these hypotheses."""
+        seen = self.experience
+        if self._none is not None or not hypotheses:
+            return Certain(frozenset(), frozenset(), frozenset())
+        slots = seen.slots
+        stars = [sorted(view) for view in seen.views]
+        places = [tuple(gateway // slots for gateway in at) for at in hypotheses]
+        steps = range(seen.steps + 1)
+        same, new = set(), set()
+        first: dict[int, tuple[int, int]] = {}
+        for later in steps:
+            if all(at[later] == later for at in places):
+                new.add(later)
+            for earlier in range(later):
+                if any(at[earlier] != at[later] for at in places):
+                    continue
+                same.add((earlier, later))
+                # As a gateway of the earlier visit, by its number there.
+                turned = {
+                    (star.index(at[later] % slots) - star.index(at[earlier] % slots)) % len(star)
+                    for at in hypotheses
+                    for star in [stars[at[later] // slots]]
+                }
+                if len(turned) == 1:
+                    first.setdefault(later, (earlier, stars[earlier][turned.pop()]))
+        return Certain(frozenset(same), frozenset(new), frozenset(self._linked(first)))
+
     def _linked(self, first: dict[int, tuple[int, int]]) -> Iterator[Linked]:
         """The links of which it is certain that the steps that made them were at places seen
         before: said of the first visits there."""
@@ -318,7 +365,15 @@ class OnlineSolver:
             if step - 1 in first or step in first:
                 here, shift = first.get(step - 1, (step - 1, 0))
                 there, slot = first.get(step, (step, 0))
-                yield here, (shift + turn) % self.experience.slots, there, slot
+                yield here, self._turned(here, shift, step - 1, turn), there, slot
+
+    def _turned(self, here: int, shift: int, visit: int, turn: int) -> int:
+        """The slot at visit ``here`` of the gateway that another visit of its place, which stands
+        at its gateway ``shift``, sees in the slot ``turn``."""
+        if not self.experience.tolerance:
+            return (shift + turn) % self.experience.slots
+        star, view = sorted(self.experience.views[here]), sorted(self.experience.views[visit])
+        return star[(star.index(shift) + view.index(turn)) % len(star)]
 
     def _dstates(self, model: clingo.Model) -> tuple[DState, ...]:
         step = {visit: number for number, visit in enumerate(self.visits)}
