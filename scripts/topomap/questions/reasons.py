@@ -11,7 +11,7 @@ from fractions import Fraction
 from functools import cached_property
 
 from topomap.model.experience import DState, Experience
-from topomap.model.topology import gid
+from topomap.model.topology import TopologicalMap, gid
 from topomap.model.words import number, plural
 from topomap.questions.statements import statement_text
 from topomap.runtime.errors import printable
@@ -78,10 +78,16 @@ class Broken:
 
     def left_by(self, step: int) -> DState:
         """The gateway by which a step leaves."""
-        place, slot = self.at[step - 1]
-        turn = self.experience.turns[step - 1]
-        assert turn is not None
-        return place, (slot + turn) % self.slots
+        return self.experience.way_out(step, self.at[step - 1])
+
+    def opposite(self, heading: DState) -> int:
+        """The slot straight across the place of a gateway, or that gateway again; that of a path
+        which ends at gateway S, where it is told which gateways are on one path, is -1 - S."""
+        return self._world.opposite(heading)[1]
+
+    @cached_property
+    def _world(self) -> TopologicalMap:
+        return self.experience.map_of(self.at)
 
     @cached_property
     def runs(self) -> dict[int, dict[int, int]]:
@@ -92,27 +98,31 @@ class Broken:
             if turn is None:
                 rested = True
                 continue
-            if rested or turn != self.slots // 2:
+            if rested or not self.experience.goes_straight(step):
                 rested = False
                 run = runs[step] = {step - 1: self.left_by(step)[1]}
-            run[step] = (self.at[step][1] + self.slots // 2) % self.slots
+            run[step] = self.opposite(self.at[step])
         return runs
 
     def touching(self, node: Node) -> Iterator[Node]:
         """The same place on the same path, on any run."""
-        run, step = node
+        _, step = node
         for other, visits in self.runs.items():
             for visit, heading in visits.items():
-                turn = heading - self.runs[run][step]
-                if self.place(visit) == self.place(step) and turn % (self.slots // 2) == 0:
+                if self.place(visit) == self.place(step) and self._on_one(node, heading):
                     yield other, visit
+
+    def _on_one(self, node: Node, heading: int) -> bool:
+        """Whether a heading at the place of a visit is on the path of its run."""
+        run, step = node
+        ahead = self.runs[run][step]
+        return heading in (ahead, self.opposite((self.place(step), ahead)))
 
     def crossing(self, node: Node, other: int) -> Iterator[Node]:
         """The same place on another run, which heads another way there."""
-        run, step = node
+        _, step = node
         for visit, heading in self.runs[other].items():
-            turn = heading - self.runs[run][step]
-            if self.place(visit) == self.place(step) and turn % (self.slots // 2):
+            if self.place(visit) == self.place(step) and not self._on_one(node, heading):
                 yield other, visit
 
     def along(self, start: Node, goals: set[Node], straight: bool) -> list[int] | None:
@@ -173,8 +183,10 @@ class Broken:
             while len(walk) <= 2 * len(self.at) and (on := self._next(node, sign)):
                 node, sign = on
                 walk.append(node[1])
-                heading = self.runs[node[0]][node[1]] + (0 if sign == 1 else self.slots // 2)
-                if (self.place(node[1]), heading % self.slots) == here:
+                heading = self.runs[node[0]][node[1]]
+                if sign == -1:
+                    heading = self.opposite((self.place(node[1]), heading))
+                if (self.place(node[1]), heading) == here:
                     walks.append(walk)
                     break
         return min(walks, key=len, default=None)
@@ -343,10 +355,15 @@ def told_views(
     view, other = experience.views[step], experience.views[visit]
     signs = experience.landmarks[step], experience.landmarks[visit]
     turns = [turn for turn in range(slots) if {(slot + turn) % slots for slot in view} == other]
+    if experience.straight or experience.tolerance:
+        turns = [turn for turn in sorted(other) if experience.looks_alike(visit, turn, step)]
     if signs[0] != signs[1]:
         fault = "the landmarks are not the same"
+    elif not turns and experience.straight:
+        fault = "no turn of one gives the other, with the same gateways on one path"
     elif not turns:
         fault = "no turn of one gives the other"
+        fault += f", within {number(experience.tolerance, 'slot')}" * bool(experience.tolerance)
     elif at is None:
         fault = f"one gives the other only if turned by {' or '.join(map(str, turns))}"
     else:
