@@ -89,7 +89,7 @@ def test_each_step_of_random_experiences(cases):
         assert list(follow_all(experience, draw.random() < 0.5, bound))
 
 
-@pytest.mark.parametrize("cases", [60, pytest.param(800, marks=pytest.mark.long)])
+@pytest.mark.parametrize("cases", [60, pytest.param(300, marks=pytest.mark.long)])
 def test_each_step_without_the_path_axiom(cases):
     """Worlds with loops and rooms that come back among them; what is preferred is said of all maps
     of the oracle. A step that was taken back leaves no trace here, either."""
@@ -107,7 +107,7 @@ def test_each_step_without_the_path_axiom(cases):
                     go(follower, experience, step)
             status = follower.status(WATCH)
             assert (status.fault, status.hypotheses, status.exact) == (None, len(level), True)
-            assert (status.certain.same, status.certain.new) == certain(level) or not level
+            assert not level or (status.certain.same, status.certain.new) == certain(level)
             cut = plain(experience.cut(step))
             every = {at: Hypothesis(cut, at) for at in level}
             worth = {
