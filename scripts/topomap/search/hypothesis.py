@@ -128,6 +128,10 @@ class Hypothesis:
         pairs = self.experience.straight[place]
         return gateway - slot + next((pair[0] for pair in pairs if slot in pair), slot)
 
+    def axes(self, place: int) -> dict[int, int]:
+        """The gateways of a place, each with the name of its axis."""
+        return {gateway: self._axis[gateway] for gateway in self.stars[place]}
+
     @property
     def dstates(self) -> tuple[DState, ...]:
         """The place and the gateway after each step, as ``at/3`` names them."""

@@ -1,0 +1,253 @@
+"""Counting maps without listing them: hypotheses that have the same future are one.
+
+Two hypotheses have the same future if the steps to come can do the same in both. Of a hypothesis
+this depends on where the agent stands; on the gateways that a step to come can still link or leave
+by; on where those of them that have a link lead; and on which of the paths on which they lie may
+become one. So hypotheses are counted by these, step by step: a dynamic programme. Its keys
+are exact; nothing is hashed to a number that could be the same for two of them.
+
+Planar maps hardly merge, as each face has its gateways in an order of its own.
+"""
+
+from collections import defaultdict
+from collections.abc import Iterator
+from typing import NamedTuple
+
+from topomap.model.experience import Experience
+from topomap.model.query import Query
+from topomap.runtime.errors import InputError
+from topomap.runtime.watch import Watch
+from topomap.search.future import Future
+from topomap.search.hypothesis import OFTEN, Hypothesis, numbers
+
+PARTS = {"closed", "perpendicular"}  # that maps which are counted in this way may be asked to have
+
+
+class State(NamedTuple):
+    """What hypotheses of one future have in common.
+
+    ``pending`` holds the pending gateways that a step to come can link, in order, and ``path`` the
+    path of each: paths are numbered in the order of their first such gateway. ``links`` holds the
+    linked gateways by which a step to come can leave, each with the gateway at the other end.
+    ``meets`` holds for each path, as bits, the paths that share a place with it. If maps are to be
+    perpendicular, ``twice`` holds those that meet a path which meets it, and ``thrice`` those from
+    which two paths in a row lead to it. ``places`` is how many places there are, if that counts.
+    """
+
+    here: int
+    pending: tuple[int, ...]
+    path: tuple[int, ...]
+    links: tuple[tuple[int, int], ...]
+    meets: tuple[int, ...]
+    twice: tuple[int, ...]
+    thrice: tuple[int, ...]
+    places: int
+
+
+def refusal(experience: Experience, query: Query) -> str | None:
+    """Why maps cannot be counted by merging, or None."""
+    asked = query.parts - PARTS
+    if asked:
+        return f"{min(asked)}: maps that are asked for it hardly merge"
+    if experience.parted:
+        return "several logs, or second looks"
+    told = {
+        "a marker": experience.names(),
+        "odometry": experience.shifts,
+        "lengths": experience.lengths,
+        "visits known to be of one place": experience.same,
+        "visits known to be of two places": experience.apart,
+        "statements that are taken for granted": experience.assumed,
+        "bearings that are not exact": experience.tolerance,
+    }
+    for what, known in told.items():
+        if known:
+            return what
+    if experience.compass_told() not in (0, experience.steps + 1):
+        return "a compass that is not told of each visit"
+    return None
+
+
+class Merging:
+    """The number of hypotheses of an experience after each step, or of those of them that can still
+    become closed or perpendicular maps."""
+
+    def __init__(self, experience: Experience, query: Query):
+        """Raises InputError, one line, if there is anything by which hypotheses cannot be merged."""
+        if query.horizon is not None:
+            experience = experience.cut(query.horizon)
+        if why := refusal(experience, query):
+            raise InputError(f"maps cannot be counted by merging: {why}")
+        self.experience, self.slots = experience, experience.slots
+        self.closed = "closed" in query.parts
+        self.perpendicular = "perpendicular" in query.parts
+        self.bound = query.places
+        whole = Hypothesis(experience)
+        self.future = Future(experience, whole.views)
+        self.kinds, self.stars, self._axes = whole.views, whole.stars, whole.axes
+        self.largest = 0  # states at one step
+        # Of each gateway of each visit, as if it were of a place of its own: the last step after
+        # which it can be linked, and the last visit from which a step can leave by it.
+        self._linked_by: dict[int, int] = {}
+        self._left_by: dict[int, int] = {}
+        self._possible = [self.future.possible_visits(visit, 0) for visit in range(len(self.stars))]
+        for visit, star in enumerate(self.stars):
+            for gateway in star:
+                possible = self._possible[visit]
+                self._linked_by[gateway] = self.future.last_at(gateway, possible)
+                self._left_by[gateway] = self.future.last_left(gateway, possible)
+
+    def counts(self, watch: Watch | None = None) -> Iterator[int]:
+        """How many hypotheses there are after each step, from 0. If maps are to be closed or
+        perpendicular, those are left out of which no such map can come any more; the last number is
+        that of the maps in any case."""
+        level: dict[State, int] = {}
+        pending, relations = self._place(0, {}, [[], [], []])
+        self._add(level, 1, 0, 0, pending, relations, {}, 1)
+        yield sum(level.values())
+        work = 0
+        for step in range(1, self.experience.steps + 1):
+            following: dict[State, int] = defaultdict(int)
+            for state, many in level.items():
+                work += 1
+                if watch and work % OFTEN == 0:
+                    watch.tick()
+                self._go(state, step, many, following)
+            level = following
+            self.largest = max(self.largest, len(level))
+            yield sum(level.values())
+
+    def _go(self, state: State, step: int, many: int, level: dict[State, int]) -> None:
+        """Count the hypotheses that a step makes of those of a state."""
+        place, slot = divmod(state.here, self.slots)
+        out = place * self.slots + (slot + self.future.turns[step]) % self.slots
+        links = dict(state.links)
+        pending = dict(zip(state.pending, state.path, strict=True))
+        relations = [[*state.meets], [*state.twice], [*state.thrice]]
+        if out in links:
+            if self._fits(links[out], step):
+                self._add(level, many, step, links[out], pending, relations, links, state.places)
+            return
+        path = pending.pop(out, None)
+        if path is None:  # no step can leave by it, so the agent is not there
+            return
+        barred = (1 << path) | state.meets[path]
+        if self.perpendicular:
+            barred |= state.twice[path] | state.thrice[path]
+        for gateway, other in pending.items():
+            if self._fits(gateway, step) and not barred >> other & 1:
+                rest = {g: p for g, p in pending.items() if g != gateway}
+                ends = {**links, out: gateway, gateway: out}
+                one = [[*of] for of in relations]
+                self._join(path, other, rest, one)
+                self._add(level, many, step, gateway, rest, one, ends, state.places)
+        if self.bound is None or state.places < self.bound:
+            new = step * self.slots
+            grown, one = self._place(step, pending, relations)
+            other = grown.pop(new)
+            self._join(path, other, grown, one)
+            ends = {**links, out: new, new: out}
+            self._add(level, many, step, new, grown, one, ends, state.places + 1)
+
+    def _fits(self, gateway: int, step: int) -> bool:
+        """Whether a step can arrive at a gateway of a known place."""
+        place, slot = divmod(gateway, self.slots)
+        if self.kinds[gateway] != self.future.arrival[step]:
+            return False
+        return bool(self._possible[place] >> (step * self.slots + slot) & 1)
+
+    def _place(
+        self, place: int, pending: dict[int, int], relations: list[list[int]]
+    ) -> tuple[dict[int, int], list[list[int]]]:
+        """The same with a new place. Its paths meet there."""
+        first = len(relations[0])
+        axes = self._axes(place)
+        number = {axis: first + n for n, axis in enumerate(dict.fromkeys(axes.values()))}
+        every = sum(1 << path for path in number.values())
+        meets, twice, thrice = ([*of] for of in relations)
+        for path in number.values():
+            meets.append(every & ~(1 << path))
+            twice.append(0)  # those that meet here are barred by that
+            thrice.append(0)
+        return pending | {g: number[axis] for g, axis in axes.items()}, [meets, twice, thrice]
+
+    def _join(
+        self, path: int, other: int, pending: dict[int, int], relations: list[list[int]]
+    ) -> None:
+        """Make two paths one, which keeps the first one's number."""
+        meets, twice, thrice = relations
+        for gateway, of in pending.items():
+            if of == other:
+                pending[gateway] = path
+        both = (1 << path) | (1 << other)
+        here, there = meets[path], meets[other]
+        if self.perpendicular:
+            # A path that meets the one is now, by the new path, next but one to each that meets
+            # the other; and from there to each that is next but one to it, next but two.
+            near, far = twice[path], twice[other]
+            for one in numbers((here | near | there | far) & ~both):
+                meets_one, meets_other = here >> one & 1, there >> one & 1
+                if meets_one:
+                    twice[one] |= there & ~both
+                    thrice[one] |= far & ~both
+                if meets_other:
+                    twice[one] |= here & ~both
+                    thrice[one] |= near & ~both
+                if near >> one & 1:
+                    thrice[one] |= there & ~both
+                if far >> one & 1:
+                    thrice[one] |= here & ~both
+            for of in (twice, thrice):
+                _rename(of, path, other)
+        _rename(meets, path, other)
+
+    def _add(
+        self,
+        level: dict[State, int],
+        many: int,
+        step: int,
+        here: int,
+        pending: dict[int, int],
+        relations: list[list[int]],
+        links: dict[int, int],
+        places: int,
+    ) -> None:
+        """Count so many hypotheses more of a state, of which only that is kept which the steps to
+        come can use."""
+        kept = sorted(g for g in pending if self._linked_by[g] >= step)
+        if self.closed and len(kept) < len(pending):
+            return
+        number: dict[int, int] = {}
+        for gateway in kept:
+            number.setdefault(pending[gateway], len(number))
+        path = tuple(number[pending[gateway]] for gateway in kept)
+        meets, *more = (self._renumbered(of, number) for of in relations[: 1 + 2 * self.perpendicular])
+        if more:
+            more[0] = tuple(of & ~(mine | 1 << n) for n, (of, mine) in enumerate(zip(more[0], meets)))
+            more[1] = tuple(
+                of & ~(mine | two | 1 << n)
+                for n, (of, mine, two) in enumerate(zip(more[1], meets, more[0]))
+            )
+        twice, thrice = more or ((), ())
+        ends = tuple(sorted((g, end) for g, end in links.items() if self._left_by[g] >= step))
+        count = places if self.bound is not None else 0
+        state = State(here, tuple(kept), path, ends, meets, twice, thrice, count)
+        level[state] = level.get(state, 0) + many
+
+    def _renumbered(self, relation: list[int], number: dict[int, int]) -> tuple[int, ...]:
+        """A relation of the paths that are kept, by their new numbers."""
+        made = []
+        for path in number:
+            of = relation[path]
+            made.append(sum(1 << new for old, new in number.items() if of >> old & 1))
+        return tuple(made)
+
+
+def _rename(relation: list[int], path: int, other: int) -> None:
+    """Have a path stand for another one, too."""
+    relation[path] |= relation[other]
+    for one in numbers(relation[other]):
+        relation[one] |= 1 << path
+    both = ~((1 << path) | (1 << other))
+    relation[path] &= both
+
