@@ -9,9 +9,9 @@ are exact; nothing is hashed to a number that could be the same for two of them.
 Planar maps hardly merge, as each face has its gateways in an order of its own.
 """
 
-from collections import defaultdict
 from collections.abc import Iterator
-from typing import NamedTuple
+from itertools import pairwise
+from typing import Any, NamedTuple
 
 from topomap.model.experience import Experience
 from topomap.model.query import Query
@@ -20,6 +20,8 @@ from topomap.runtime.watch import Watch
 from topomap.search.future import Future
 from topomap.search.hypothesis import OFTEN, Hypothesis, numbers
 
+Key = tuple[Any, ...]
+Counted = list[Any]  # a state, and how many hypotheses are of it
 PARTS = {"closed", "perpendicular"}  # that maps which are counted in this way may be asked to have
 
 
@@ -86,6 +88,7 @@ class Merging:
         self.future = Future(experience, whole.views)
         self.kinds, self.stars, self._axes = whole.views, whole.stars, whole.axes
         self.largest = 0  # states at one step
+        self._visits_at: dict[int, int] = {}
         # Of each gateway of each visit, as if it were of a place of its own: the last step after
         # which it can be linked, and the last visit from which a step can leave by it.
         self._linked_by: dict[int, int] = {}
@@ -101,23 +104,23 @@ class Merging:
         """How many hypotheses there are after each step, from 0. If maps are to be closed or
         perpendicular, those are left out of which no such map can come any more; the last number is
         that of the maps in any case."""
-        level: dict[State, int] = {}
+        level: dict[Key, Counted] = {}
         pending, relations = self._place(0, {}, [[], [], []])
         self._add(level, 1, 0, 0, pending, relations, {}, 1)
-        yield sum(level.values())
+        yield sum(many for _, many in level.values())
         work = 0
         for step in range(1, self.experience.steps + 1):
-            following: dict[State, int] = defaultdict(int)
-            for state, many in level.items():
+            following: dict[Key, Counted] = {}
+            for state, many in level.values():
                 work += 1
                 if watch and work % OFTEN == 0:
                     watch.tick()
                 self._go(state, step, many, following)
             level = following
             self.largest = max(self.largest, len(level))
-            yield sum(level.values())
+            yield sum(many for _, many in level.values())
 
-    def _go(self, state: State, step: int, many: int, level: dict[State, int]) -> None:
+    def _go(self, state: State, step: int, many: int, level: dict[Key, Counted]) -> None:
         """Count the hypotheses that a step makes of those of a state."""
         place, slot = divmod(state.here, self.slots)
         out = place * self.slots + (slot + self.future.turns[step]) % self.slots
@@ -203,7 +206,7 @@ class Merging:
 
     def _add(
         self,
-        level: dict[State, int],
+        level: dict[Key, Counted],
         many: int,
         step: int,
         here: int,
@@ -214,25 +217,153 @@ class Merging:
     ) -> None:
         """Count so many hypotheses more of a state, of which only that is kept which the steps to
         come can use."""
-        kept = sorted(g for g in pending if self._linked_by[g] >= step)
+        uses = self._uses(step, here, pending, links)
+        kept = [g for g in pending if g in uses]
         if self.closed and len(kept) < len(pending):
             return
+        ends = {g: end for g, end in links.items() if uses.get(g, (0, 0))[1]}
+        order = self._ordered(here, kept, pending, relations[0], ends, uses)
+        kept.sort(key=order.__getitem__)
         number: dict[int, int] = {}
         for gateway in kept:
             number.setdefault(pending[gateway], len(number))
         path = tuple(number[pending[gateway]] for gateway in kept)
         meets, *more = (self._renumbered(of, number) for of in relations[: 1 + 2 * self.perpendicular])
         if more:
-            more[0] = tuple(of & ~(mine | 1 << n) for n, (of, mine) in enumerate(zip(more[0], meets)))
+            more[0] = tuple(
+                of & ~(mine | 1 << n) for n, (of, mine) in enumerate(zip(more[0], meets, strict=True))
+            )
             more[1] = tuple(
                 of & ~(mine | two | 1 << n)
-                for n, (of, mine, two) in enumerate(zip(more[1], meets, more[0]))
+                for n, (of, mine, two) in enumerate(zip(more[1], meets, more[0], strict=True))
             )
         twice, thrice = more or ((), ())
-        ends = tuple(sorted((g, end) for g, end in links.items() if self._left_by[g] >= step))
+        out = sorted(ends, key=order.__getitem__)
         count = places if self.bound is not None else 0
-        state = State(here, tuple(kept), path, ends, meets, twice, thrice, count)
-        level[state] = level.get(state, 0) + many
+        slots = self.slots
+        ranked = sorted(order, key=order.__getitem__)
+        key = (
+            tuple([uses[g] for g in ranked]),
+            # How many slots lie between two gateways of one place.
+            tuple(
+                [
+                    (g - before) % slots if g // slots == before // slots else -1
+                    for before, g in pairwise(ranked)
+                ]
+            ),
+            order[here],
+            tuple([order[g] for g in kept]),
+            path,
+            tuple([(order[g], order.get(ends[g], -1)) for g in out]),
+            *(meets, twice, thrice, count),
+        )
+        known = level.get(key)
+        if known is None:
+            state = State(
+                here, tuple(kept), path, tuple([(g, ends[g]) for g in out]), meets, twice, thrice, places
+            )
+            level[key] = [state, many]
+        else:
+            known[1] += many
+
+    def _uses(
+        self, step: int, here: int, pending: dict[int, int], links: dict[int, int]
+    ) -> dict[int, tuple[int, int]]:
+        """The gateways that the steps to come can use: each with the visits that can stand there,
+        and the steps that can leave by it, as bits."""
+        slots, turns, last = self.slots, self.future.turns, self.experience.steps
+        arrive: dict[int, int] = {here: 1 << step}
+        leave: dict[int, int] = {}
+        waiting = [(step, here)]
+        for gateway in pending:
+            if visits := self._visits(gateway) >> (step + 1):
+                arrive[gateway] = arrive.get(gateway, 0) | visits << (step + 1)
+                waiting += [(step + 1 + n, gateway) for n in numbers(visits)]
+        for visit, gateway in waiting:
+            if visit == last:
+                continue
+            turn = turns[visit + 1]
+            out = gateway - gateway % slots + (gateway % slots + turn) % slots
+            bit = 1 << (visit + 1)
+            if out in pending:
+                leave[out] = leave.get(out, 0) | bit
+            elif out in links:
+                end = links[out]
+                if self._visits(end) & bit:
+                    leave[out] = leave.get(out, 0) | bit
+                    if not arrive.get(end, 0) & bit:
+                        arrive[end] = arrive.get(end, 0) | bit
+                        waiting.append((visit + 1, end))
+        return {g: (arrive.get(g, 0), leave.get(g, 0)) for g in arrive.keys() | leave.keys()}
+
+    def _visits(self, gateway: int) -> int:
+        """The visits that can stand at a gateway, as bits."""
+        known = self._visits_at.get(gateway)
+        if known is None:
+            place, slot = divmod(gateway, self.slots)
+            possible = self._possible[place]
+            known = 0
+            for visit in range(place, self.experience.steps + 1):
+                fits = self.kinds[gateway] == self.future.arrival[visit]
+                if fits and (possible >> (visit * self.slots + slot)) & 1:
+                    known |= 1 << visit
+            self._visits_at[gateway] = known
+        return known
+
+    def _ordered(
+        self,
+        here: int,
+        pending: list[int],
+        paths: dict[int, int],
+        meets: list[int],
+        ends: dict[int, int],
+        uses: dict[int, tuple[int, int]],
+    ) -> dict[int, int]:
+        """The gateways that the steps to come can use, in an order that does not depend on the
+        names of places, as far as that is soon found; each with its number."""
+        slots = self.slots
+        rings: dict[int, list[int]] = {}
+        for gateway in sorted(uses):
+            rings.setdefault(gateway // slots, []).append(gateway)
+        waiting = {*pending}
+        colour: dict[int, Any] = {
+            g: (use, g == here, g in waiting, (rings[g // slots][n - 1] - g) % slots)
+            for ring in rings.values()
+            for n, g in enumerate(ring)
+            for use in [uses[g]]
+        }
+        nothing: tuple[Any, ...] = ()
+        for again in (True, False):
+            turned = {}
+            for place, ring in rings.items():
+                seen = [colour[gateway] for gateway in ring]
+                if len(ring) > 1:
+                    n = min(range(len(ring)), key=lambda n: seen[n:] + seen[:n])
+                    ring[:] = ring[n:] + ring[:n]
+                    seen = seen[n:] + seen[:n]
+                turned[place] = tuple(seen)
+            if not again:
+                break
+            names = {name: n for n, name in enumerate(sorted({*turned.values()}))}
+            spot = {g: (names[turned[p]], n) for p, ring in rings.items() for n, g in enumerate(ring)}
+            on: dict[int, list[tuple[int, int]]] = {}
+            for gateway in pending:
+                on.setdefault(paths[gateway], []).append(spot[gateway])
+            form = {path: tuple(sorted(spots)) for path, spots in on.items()}
+            met = {
+                path: tuple(sorted(form[other] for other in numbers(meets[path]) if other in form))
+                for path in form
+            }
+            colour = {
+                g: (
+                    at,
+                    (form[paths[g]], met[paths[g]]) if g in waiting else nothing,
+                    spot[ends[g]] if g in ends else nothing,
+                )
+                for g, at in spot.items()
+            }
+        ranked = sorted(rings, key=lambda place: (turned[place], place))
+        return {g: n for n, g in enumerate(g for place in ranked for g in rings[place])}
 
     def _renumbered(self, relation: list[int], number: dict[int, int]) -> tuple[int, ...]:
         """A relation of the paths that are kept, by their new numbers."""
@@ -241,6 +372,10 @@ class Merging:
             of = relation[path]
             made.append(sum(1 << new for old, new in number.items() if of >> old & 1))
         return tuple(made)
+
+
+def _hashable(ring: list[Any]) -> tuple[Any, ...]:
+    return tuple(ring)
 
 
 def _rename(relation: list[int], path: int, other: int) -> None:
