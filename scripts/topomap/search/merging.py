@@ -342,7 +342,7 @@ class Merging:
                     ring[:] = ring[n:] + ring[:n]
                     seen = seen[n:] + seen[:n]
                 turned[place] = tuple(seen)
-            if not again:
+            if not again or len({*turned.values()}) == len(rings):
                 break
             names = {name: n for n, name in enumerate(sorted({*turned.values()}))}
             spot = {g: (names[turned[p]], n) for p, ring in rings.items() for n, g in enumerate(ring)}
