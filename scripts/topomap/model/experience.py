@@ -73,8 +73,8 @@ class Experience:
 
     ``straight[t]`` holds the pairs of gateways, as slots of ``views[t]``, that are on one path
     (semantics: "Which gateways are on one path"); a gateway that is in none ends its path. If
-    ``straight`` is empty, opposite gateways are on one path. Bearings may be wrong by ``tolerance`` slots
-    (semantics: "Bearings that are not exact").
+    ``straight`` is empty, opposite gateways are on one path. Bearings may be wrong by
+    ``tolerance`` slots (semantics: "Bearings that are not exact").
     """
 
     slots: int
