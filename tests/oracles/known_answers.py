@@ -12,9 +12,10 @@ from dataclasses import dataclass, replace
 from functools import cache, partial
 from itertools import combinations, product
 
-from conftest import ENCODINGS, PARTS, Truth, beyond, forms
+from conftest import ENCODINGS, PARTS, ROOT, Truth, beyond, forms
 from topomap.documents.check import NO_PATH_AXIOM, STEP_RULES, by_definition, by_rules
 from topomap.model.experience import MARKER, Experience, observe
+from topomap.model.facts import parse
 from topomap.model.topology import TopologicalMap
 from topomap.questions.standings import Standing
 from topomap.solver.programs import FORMS
@@ -27,7 +28,7 @@ from oracles.brute_force import Hypothesis
 from oracles.maps_with_errors import DEMANDS, INSTANCES, by_hand, coming_back, contradicting, drawn
 from oracles.misreadings import brute, corrupted, expected
 from oracles.statements import FIGURES, PROPERTIES, QUALITIES, RELATIONS, relation
-from oracles.worlds import WORLDS, informed, logs, of_grid, random_experience, walked
+from oracles.worlds import WORLDS, bent, informed, logs, of_grid, random_experience, walked
 
 
 def seen(*steps, slots=4):
@@ -387,6 +388,225 @@ LOGS = {
         4, [[0, 2]] * 4, [0, 2, 2], drops=[0], things=[("drop", 1, "coin")], markers=[3]
     ),
 }
+
+
+# Pairs of gateways that are told, and bearings that are not exact: each at its border.
+BOTH = [(0, 2), (1, 3)]  # all that are opposite, of four
+DRIFTING = Experience(12, [[0, 4, 8], [0], [0, 5, 7]], [0, 0])
+BENT = {
+    "one slot off": replace(DRIFTING, tolerance=1),
+    "one slot off, exactly": DRIFTING,
+    # Each is within the tolerance of the first visit, and the two are twice that apart.
+    "off to both sides": Experience(
+        12, [[0, 4], [0], [0, 3], [0], [0, 5]], [0, 0, 0, 0], tolerance=1
+    ),
+    "off too far": Experience(12, [[0, 4], [0], [0, 6]], [0, 0], tolerance=1),
+    "the last slot": Experience(4, [[0, 1], [0], [0, 3]], [0, 0], tolerance=2),
+    "a turn of a slot off": Experience(12, [[0, 4, 8], [0], [0, 5, 7], [0]], [0, 0, 5], tolerance=1),
+    "a compass one off": Experience(
+        12, [[0, 4], [0], [0, 4]], [0, 0], compass=[3, None, 4], tolerance=1
+    ),
+    "a compass two off": Experience(
+        12, [[0, 4], [0], [0, 4]], [0, 0], compass=[3, None, 5], tolerance=1
+    ),
+    "a compass round the circle": Experience(
+        12, [[0, 4], [0], [0, 4], [0], [0, 4]], [0] * 4, compass=[0, None, 11, None, 1], tolerance=1
+    ),
+    "one opposite, and one not": Experience(8, [[0, 4], [0], [0, 5]], [0, 0], tolerance=1),
+    "opposite, as told": replace(ROUND, straight=[[]] * 6),
+    "all opposite": replace(EXPERIENCES["ahead"], straight=[[], [(0, 2)], BOTH]),
+    "round a corner": replace(EXPERIENCES["square"], straight=[*[[(0, 3)]] * 4, [(0, 1)]]),
+    "round once more": replace(EXPERIENCES["round"], straight=[*[[(0, 3)]] * 4, [(0, 1)], [(0, 3)]]),
+    "ends at a corner": replace(CORNERS, straight=[[(0, 1)], [], [(0, 3)]]),
+    # The path ends at gateway 0 of the first place, and another one has the gateway opposite to it.
+    "a gateway opposite an end": Experience(
+        4, [[0, 1, 2], [0, 1], [0, 2], [0, 2, 3]], [2, 1, 0], straight=[[(1, 2)], [], [], [(0, 3)]]
+    ),
+    "paths that bend": Experience(
+        6,
+        [[0, 1, 3], [0, 2], [0, 2], [0, 3, 4], [0, 2], [0, 1]],
+        [1, 2, 2, 3, 2],
+        straight=[[(0, 1)], [(0, 2)], [], [(0, 4)], [(0, 2)], []],
+    ),
+}
+
+
+def places_of(name):
+    """A walk through a smallest case of tests/cases."""
+    return parse((ROOT / f"tests/cases/{name}.lp").read_text(), name)
+
+
+def bearings() -> Iterator[Query]:
+    """Experiences where pairs of gateways are told, or bearings are not exact, with the path axiom
+    and without it; and others without it."""
+    cases = [places_of(name) for name in ("crescent", "oxbow", "loop")]
+    drawn = [bent(random.Random(f"bearings {seed}"), 7) for seed in range(80)]
+    drawn += [replace(informed(random.Random(f"off {seed}"), 5), tolerance=1) for seed in range(16)]
+    drawn += [replace(logs(random.Random(f"logs off {seed}"), 6), tolerance=1) for seed in range(30)]
+    for experience in [*BENT.values(), *cases, *drawn]:
+        truth = Truth(experience)
+        if len(truth.final) < 150:
+            yield from shapes(experience, truth)
+            yield from exceptional(experience, truth)
+            yield from _asked(random.Random(experience.facts()), experience, truth)
+    for seed in range(40):
+        for number in range(3):  # more of what is asked of gateways
+            experience = bent(random.Random(f"bent asked {seed}"), 6)
+            truth = Truth(experience)
+            if len(truth.final) < 60:
+                yield from _asked(random.Random(f"{number} {seed}"), experience, truth)
+    loose = [bent(random.Random(f"bearings, no axiom {seed}"), 6) for seed in range(50)]
+    loose += [random_experience(random.Random(f"no axiom {seed}"), 6) for seed in range(50)]
+    for experience in [*BENT.values(), *cases[2:], *loose]:
+        truth = Truth(experience, axiom=False)
+        if len(truth.final) < 150:
+            yield from shapes(experience, truth, "no_path_axiom")
+            yield from exceptional(experience, truth, "no_path_axiom")
+            draw = random.Random(experience.facts())
+            yield from _asked(draw, experience, truth, "no_path_axiom")
+
+
+def ats(at) -> frozenset[str]:
+    """The atoms of a hypothesis."""
+    return frozenset(f"at({t},{p},{s})" for t, (p, s) in enumerate(at))
+
+
+def shapes(experience: Experience, truth: Truth, *more: str) -> Iterator[Query]:
+    """All hypotheses, those of each part, and the best, of each form of the encodings that has
+    what is told."""
+    facts, how = experience.facts(), tuple(experience.constants())
+    told = [*beyond(facts), *["beyond/tolerance"] * bool(experience.tolerance)]
+    best = {"minimal": Hypothesis.cost, "genus": lambda h: (h.genus(),)}
+    for part in ("", *PARTS, *best):
+        parts = (part,) if part else ()
+        if part in best:
+            found = truth.least(best[part], truth.final)
+            answers = frozenset((best[part](truth.final[at]), ats(at)) for at in found)
+            options = (*how, "--opt-mode=optN")
+        else:
+            answers = frozenset(((), ats(at)) for at in truth.having(*parts))
+            options = how
+        for form in forms(*parts):
+            if (form, part, bool(experience.straight)) == ("paper", "boundary", True):
+                continue  # it has no left and right of paths whose gateways are told
+            if (form, part, bool(more)) == ("paper", "boundary", True):
+                continue  # nor of paths that come back
+            under = FORMS[form].relative_to(ENCODINGS)
+            mine = told if form == "paper" else ()
+            files = [str(under / name) for name in ("topomap", *mine, *parts)]
+            yield Query((*files, *more), facts, answers, options)
+    bound = frozenset(((), ats(at)) for at in truth.having(bound=2))
+    yield Query(("topomap", "bound", *more), facts, bound, (*how, "-c", "places=2"))
+
+
+def exceptional(experience: Experience, truth: Truth, *more: str) -> Iterator[Query]:
+    """The exceptions of each map, and the maps that are best with them."""
+    facts, how = experience.facts(), tuple(experience.constants())
+    under = FORMS["paper"].relative_to(ENCODINGS)
+    stated = [*beyond(facts), *["beyond/tolerance"] * bool(experience.tolerance)]
+    stated = [str(under / name) for name in ("topomap", *stated, "beyond/exceptions")]
+    for parts in ((), ("minimal",), ("closed", "minimal")):
+        closed = [*truth.having(*(part for part in parts if part == "closed"))]
+        costs = {
+            at: (h.worth() if parts else h.worth()[:1]) for at, h in truth.final.items()
+        }
+        options = (*how, "--opt-mode=enum,99,99,99") if parts else (*how, "--opt-mode=enum,99")
+        named = frozenset((costs[at], ats(at) | exceptions_of(truth.final[at])) for at in closed)
+        files = ("topomap", "exceptions", *parts, *more)
+        yield Query(files, facts, named, options)
+        least = min((costs[at] for at in closed), default=())
+        best = frozenset(one for one in named if one[0] == least)
+        yield Query(files, facts, best, (*how, "--opt-mode=optN"))
+        if not experience.straight:
+            files = (*stated, *(str(under / part) for part in parts), *more)
+            plain = frozenset((costs[at], ats(at)) for at in closed)
+            yield Query(files, facts, plain, options)
+            best = frozenset((costs[at], ats(at)) for at in closed if costs[at] == least)
+            yield Query(files, facts, best, (*how, "--opt-mode=optN"))
+
+
+def exceptions_of(h: Hypothesis) -> frozenset[str]:
+    """The exceptions of a map as exceptions.lp names them: a path by its first run, or by its place
+    and lower slot there if no step went along it."""
+    named = []
+    for path in h.paths():
+        ends = {*path} | {h.opposite(heading) for heading in path}
+        steps = [
+            t
+            for t in range(1, len(h.at))
+            if isinstance(h.turns[t], int) and h.leaves(t) in ends
+        ]
+        place, slot = min(end for end in ends if not isinstance(end[1], str))
+        name = str(min(steps)) if steps else f"bare({place},{slot})"
+        named.append((name, path))
+    found = set()
+    for (one, here), (other, there) in combinations(named, 2):
+        if len({place for place, _ in here} & {place for place, _ in there}) > 1:
+            first, second = sorted((int(one), int(other)))
+            found.add(f"exception(meet_twice({first},{second}))")
+    for name, path in named:
+        if len({place for place, _ in path}) < len(path):
+            found.add(f"exception(place_twice({name}))")
+    for (name, _), (_, right, left) in zip(named, h.sides(), strict=True):
+        found |= {f"exception(both_sides({name},{place}))" for place in right & left}
+    return frozenset(found)
+
+
+def off_or_bent() -> Iterator[Query]:
+    """What a step may break where pairs of gateways are told, or bearings are not exact, and each
+    visit sees as many gateways. Where visits of one place take other gateways to be on one path, it
+    is not defined what a path is; so nothing but views is then broken, or no view is."""
+    number = 0
+    for seed in range(10_000):
+        draw = random.Random(f"broken bent {seed}")
+        experience = bent(draw, 3)
+        if not experience.steps or len({*map(len, experience.views)}) > 1 or experience.slots > 8:
+            continue
+        if not (experience.straight or experience.tolerance):
+            continue
+        every = [Assignment(experience, at) for at in assignments(experience)]
+        if len(every) > 400:
+            continue
+        yield from given_up_of(experience, every)
+        number += 1
+        if number == 60:
+            return
+
+
+def given_up_of(experience: Experience, every: list[Assignment]) -> Iterator[Query]:
+    """All dstates of which no view is wrong, with what they break; those that break nothing else;
+    and those that break nothing."""
+    names = [*reasons(experience)]
+    views = [name for name in names if name.startswith("view")]
+    of_paths = ("twice", "crossed", "circular")
+    safe = [name for name in names if name not in views and not name.startswith(of_paths)]
+    sound, other, defined = set(), set(), True
+    for one in every:
+        wrong = {f"waived({name})" for name in names if one.broken(name)}
+        of_views = {name for name in wrong if name.startswith("waived(view")}
+        if not of_views:
+            sound.add(((), ats(one.at) | wrong))
+        odd = any(
+            one.at[t][0] == one.at[u][0] and one.pairs(t) != one.pairs(u)
+            for t, u in combinations(range(len(one.at)), 2)
+        )
+        if odd and not any(one.broken(name) for name in safe):
+            defined = False
+        if wrong == of_views:
+            other.add(((), ats(one.at) | wrong))
+    files, how = ("topomap", "explain"), (*experience.constants(), "--opt-mode=ignore")
+    facts = experience.facts()
+    yield Query(files, f"{facts} :- waived(view(_,_)).", frozenset(sound), how)
+    if defined:
+        seen = "is_view(view(T,U)) :- waived(view(T,U)). :- waived(R), not is_view(R)."
+        yield Query(files, f"{facts} {seen}", frozenset(other), how)
+    right = frozenset(((), ats(at)) for at in Truth(experience).final)
+    for parts, found in (((), right), (("planar",), None), (("boundary",), None)):
+        if found is None:
+            found = frozenset(((), ats(at)) for at in Truth(experience).having(*parts))
+        yield Query((*files, *parts), f"{facts} :- waived(_).", found, how)
+    free = frozenset(((), ats(at)) for at in Truth(experience, axiom=False).final)
+    yield Query((*files, "no_path_axiom"), f"{facts} :- waived(_).", free, how)
 
 
 def waived(experience: Experience, parts: tuple[str, ...]) -> Iterator[Query]:
@@ -1125,6 +1345,8 @@ SUITES = (
     marker,
     knowledge,
     given_up,
+    bearings,
+    off_or_bent,
     misread,
     circumscription,
     phases,
