@@ -25,7 +25,15 @@ from topomap.worlds.route import snake
 from oracles import phase_answers, walks
 from oracles.broken_rules import Assignment, assignments, reasons
 from oracles.brute_force import Hypothesis
-from oracles.maps_with_errors import DEMANDS, INSTANCES, by_hand, coming_back, contradicting, drawn
+from oracles.maps_with_errors import (
+    DEMANDS,
+    INSTANCES,
+    bent_maps,
+    by_hand,
+    coming_back,
+    contradicting,
+    drawn,
+)
 from oracles.misreadings import brute, corrupted, expected
 from oracles.statements import FIGURES, PROPERTIES, QUALITIES, RELATIONS, relation
 from oracles.worlds import WORLDS, bent, informed, logs, of_grid, random_experience, walked
@@ -933,16 +941,28 @@ def check() -> Iterator[Query]:
     where both checkers say the same."""
     alone = ("boundary", "perpendicular", "travelled")
     for experience, at in [*by_hand(), *drawn(120), *contradicting(80), *coming_back(80)]:
-        for demands in (DEMANDS, (), (*alone, NO_PATH_AXIOM)):
-            violations = by_definition(experience, at, demands)
-            broken = STEP_RULES & dict(violations).keys()
-            if broken and by_rules(experience, at, demands) != violations:
-                continue
-            facts = [f"at({step},{place},{slot})." for step, place, slot in at]
-            facts += [f"demand({demand})." for demand in demands]
-            found = shown(*(f"violation({rule},{step})" for rule, step in violations))
-            told = experience.facts() + "".join(facts)
-            yield Query(("check",), told, found, tuple(experience.constants()))
+        yield from judged(experience, at, DEMANDS, (), (*alone, NO_PATH_AXIOM))
+
+
+def check_bent() -> Iterator[Query]:
+    """The same where pairs of gateways are told, or bearings are not exact."""
+    alone = ("boundary", NO_PATH_AXIOM)
+    for experience, at in bent_maps(160):
+        yield from judged(experience, at, DEMANDS, (*DEMANDS, NO_PATH_AXIOM), alone, ())
+
+
+def judged(experience: Experience, at: list, *every: tuple[str, ...]) -> Iterator[Query]:
+    """What is wrong with a map where this is demanded."""
+    for demands in every:
+        violations = by_definition(experience, at, demands)
+        broken = STEP_RULES & dict(violations).keys()
+        if broken and by_rules(experience, at, demands) != violations:
+            continue
+        facts = [f"at({step},{place},{slot})." for step, place, slot in at]
+        facts += [f"demand({demand})." for demand in demands]
+        found = shown(*(f"violation({rule},{step})" for rule, step in violations))
+        told = experience.facts() + "".join(facts)
+        yield Query(("check",), told, found, tuple(experience.constants()))
 
 
 def demands() -> Iterator[Query]:
@@ -967,6 +987,9 @@ def faults() -> Iterator[Query]:
     """Instances with faults."""
     for facts, errors in INSTANCES.items():
         yield Query(("input",), facts, shown(*(f"error({error})" for error in errors.split())))
+    for tolerance, errors in ((-2, ["error(-1,negative_tolerance(-2))"]), (0, []), (3, [])):
+        how = ("-c", f"tolerance={tolerance}")
+        yield Query(("input",), "slots(4). view(0,0).", shown(*errors), how)
 
 
 COMPARED = {"number": int.__eq__, "least": int.__ge__, "most": int.__le__}
@@ -1078,6 +1101,24 @@ def further() -> Iterator[Query]:
         yield proved(bare(among), among, False, None)
 
 
+def further_bent() -> Iterator[Query]:
+    """The same of maps in which pairs of gateways are told, and where a compass is, too."""
+    for seed in range(70):
+        draw = random.Random(f"further bent {seed}")
+        if seed % 3:
+            _, among = walks.scattered(draw, 3)
+            among = [numbered(draw, one, False) for one in walks.bent(draw, among)]
+            facts = bare(among)
+        else:
+            experience, found = walks.drawn_bent(draw, 3, 5)
+            facts = experience.facts()
+            for number, at in enumerate(found):
+                facts += "".join(f"map({number},{t},{p},{s}). " for t, (p, s) in enumerate(at))
+            among = [walks.standing(experience, at) for at in found]
+        yield from planned(facts, among, draw.choice([1, 2]), False, 1)
+        yield proved(facts, among, False, None)
+
+
 # Two markers would tell these three by three steps, and one does not.
 TWO_MARKERS = (
     {(0, 1): (0, 2), (0, 3): (0, 0)},
@@ -1130,7 +1171,10 @@ def numbered(draw: random.Random, one: Standing, out: bool) -> Standing:
     stars = {number[place]: star for place, star in one.world.stars.items()}
     links = {(number[p], s): (number[q], x) for (p, s), (q, x) in one.world.links.items()}
     signs = {number[place]: terms for place, terms in one.world.landmarks.items()}
-    world = replace(one.world, stars=stars, links=links, landmarks=signs)
+    across = one.world.across
+    if across is not None:
+        across = {(number[p], s): (number[q], x) for (p, s), (q, x) in across.items()}
+    world = replace(one.world, stars=stars, links=links, landmarks=signs, across=across)
     dstate = number[one.dstate[0]], one.dstate[1]
     elsewhere = [place for place in stars if place != dstate[0]]
     north = {number[place]: slot for place, slot in one.compass.items()}
@@ -1148,6 +1192,8 @@ def bare(among: list[Standing]) -> str:
         for place, terms in one.world.landmarks.items():
             facts += "".join(f"map_sign({number},{place},{term}). " for term in terms)
         facts += "".join(f"map_compass({number},{p},{s}). " for p, s in one.compass.items())
+        for (place, slot), (_, other) in (one.world.across or {}).items():
+            facts += f"map_pair({number},{place},{slot},{other}). "
         facts += "map_stands({},{},{}). ".format(number, *one.dstate)
         facts += f"map_marker({number},{one.marker}). " if one.marker is not None else ""
     return facts
@@ -1223,50 +1269,74 @@ def following() -> Iterator[Query]:
     draws += [informed(random.Random(f"following known {seed}"), 6) for seed in range(20)]
     draws += [logs(random.Random(f"following logs {seed}"), 5) for seed in range(20)]
     for number, experience in enumerate([*(EXPERIENCES | WORLDS).values(), *draws]):
-        truth = Truth(experience)
-        head, *lines = experience.facts().splitlines()
-        head = f"online. {head}"
-        names, steps = list(range(len(lines))), tuple(lines)
-        if number % 2:
-            names, steps = astray(random.Random(f"astray {number}"), experience)
+        yield from followed(number, experience)
 
-        def atoms(at, names=names):
-            return frozenset(f"at({names[t]},{names[p]},{s})" for t, (p, s) in enumerate(at))
 
-        all_ = ("--project", *experience.constants())
+def following_bent() -> Iterator[Query]:
+    """The same of experiences where pairs of gateways are told, and without the path axiom."""
+    draws = [bent(random.Random(f"following bent {seed}"), 7) for seed in range(90)]
+    draws = [one for one in draws if one.straight and not one.tolerance]
+    draws += [one for one in BENT.values() if one.straight]
+    for number, experience in enumerate(draws):
+        yield from followed(number, experience)
+        yield from followed(number + 1, experience, "no_path_axiom")
+    for seed in range(40):
+        experience = random_experience(random.Random(f"following, no axiom {seed}"), 6)
+        yield from followed(seed, experience, "no_path_axiom")
 
-        def asked(found, *more, parts=(), arguments=(), facts=head, steps=steps, all_=all_):
-            how = (*all_, *arguments)
-            return Query(("online", *more), facts, frozenset(found), how, steps, ("step", *parts))
 
-        every, ignore = truth.final, ("--opt-mode=ignore",)
-        yield asked([((), atoms(at)) for at in every], arguments=ignore)
-        bound, parts = ((None, ("planar",)), (3, ("bound",)), (4, ("bound", "planar")))[number % 3]
-        if experience.starts:  # of several logs it is not followed what is planar
-            bound, parts = 4, ("bound",)
-        found = [
-            ((), atoms(at))
-            for at in truth.having(*parts[-1:] * (parts[-1] == "planar"), bound=bound)
-        ]
-        few = () if bound is None else ("-c", f"places={bound}")
-        yield asked(found, parts=parts, arguments=(*ignore, *few))
-        costs = {at: h.cost() for at, h in every.items()}
-        if number % 3 == 0:
-            fewest = truth.least(lambda h: h.cost(), every)
-            found = [(costs[at], atoms(at)) for at in fewest]
-            yield asked(found, arguments=("--opt-mode=optN",))
-        elif number % 3 == 1:
-            fewest = truth.least(lambda h: h.cost(), truth.having("closed"))
-            found = [(costs[at], atoms(at)) for at in fewest]
-            ends = (*steps, f":- not closed({names[-1]}).")
-            yield asked(found, arguments=("--opt-mode=optN",), steps=ends)
-        else:
-            told = [atoms(at) | together(experience.slots, at, names) for at in every]
-            yield asked([((), one) for one in told], "online/certain", arguments=ignore)
-            for mode, join in ("cautious", frozenset.intersection), ("brave", frozenset.union):
-                found = [((), join(*told))] if told else []
-                how = (*ignore, f"--enum-mode={mode}")
-                yield asked(found, "online/certain", arguments=how)
+def followed(number: int, experience: Experience, *loaded: str) -> Iterator[Query]:
+    """Some of that, by the number."""
+    truth = Truth(experience, axiom=not loaded)
+    head, *lines = experience.facts().splitlines()
+    head = f"online. {'straight_told. ' * bool(experience.straight)}{head}"
+    head += " step(0)." * bool(loaded)
+    names, steps = list(range(len(lines))), tuple(lines)
+    if number % 2:
+        names, steps = astray(random.Random(f"astray {number}"), experience)
+
+    def atoms(at, names=names):
+        return frozenset(f"at({names[t]},{names[p]},{s})" for t, (p, s) in enumerate(at))
+
+    all_ = ("--project", *experience.constants())
+
+    def asked(found, *more, parts=(), arguments=(), facts=head, steps=steps, all_=all_):
+        how = (*all_, *arguments)
+        files = ("online", *more, *loaded)
+        return Query(files, facts, frozenset(found), how, steps, ("step", *parts))
+
+    every, ignore = truth.final, ("--opt-mode=ignore",)
+    yield asked([((), atoms(at)) for at in every], arguments=ignore)
+    bound, parts = ((None, ("planar",)), (3, ("bound",)), (4, ("bound", "planar")))[number % 3]
+    if experience.starts:  # of several logs it is not followed what is planar
+        bound, parts = 4, ("bound",)
+    found = [
+        ((), atoms(at))
+        for at in truth.having(*parts[-1:] * (parts[-1] == "planar"), bound=bound)
+    ]
+    few = () if bound is None else ("-c", f"places={bound}")
+    yield asked(found, parts=parts, arguments=(*ignore, *few))
+    costs = {at: h.cost() for at, h in every.items()}
+    if loaded and number % 3 < 2:  # what a map costs is not told without the path axiom
+        closed = [((), atoms(at)) for at in truth.having("closed")]
+        ends = (*steps, f":- not closed({names[-1]}).")
+        yield asked(closed, arguments=ignore, steps=ends)
+    elif number % 3 == 0:
+        fewest = truth.least(lambda h: h.cost(), every)
+        found = [(costs[at], atoms(at)) for at in fewest]
+        yield asked(found, arguments=("--opt-mode=optN",))
+    elif number % 3 == 1:
+        fewest = truth.least(lambda h: h.cost(), truth.having("closed"))
+        found = [(costs[at], atoms(at)) for at in fewest]
+        ends = (*steps, f":- not closed({names[-1]}).")
+        yield asked(found, arguments=("--opt-mode=optN",), steps=ends)
+    else:
+        told = [atoms(at) | together(experience.slots, at, names) for at in every]
+        yield asked([((), one) for one in told], "online/certain", arguments=ignore)
+        for mode, join in ("cautious", frozenset.intersection), ("brave", frozenset.union):
+            found = [((), join(*told))] if told else []
+            how = (*ignore, f"--enum-mode={mode}")
+            yield asked(found, "online/certain", arguments=how)
 
 
 def astray(draw, experience):
@@ -1347,6 +1417,9 @@ SUITES = (
     given_up,
     bearings,
     off_or_bent,
+    check_bent,
+    further_bent,
+    following_bent,
     misread,
     circumscription,
     phases,
