@@ -191,7 +191,8 @@ def add_tolerance(command: Parser) -> None:
         "--tolerance",
         type=number(int, 0),
         metavar="N",
-        help="bearings may be wrong by N slots; a place keeps those first seen (default: 0)",
+        help="bearings may be wrong by N slots; a place keeps those that were seen first "
+        "(default: 0)",
     )
 
 
