@@ -457,6 +457,8 @@ def bearings() -> Iterator[Query]:
             yield from shapes(experience, truth)
             yield from exceptional(experience, truth)
             yield from _asked(random.Random(experience.facts()), experience, truth)
+        if experience.straight and len(truth.final) < 60:
+            yield from about(experience, truth)
     for seed in range(20):
         for number in range(2):  # more of what is asked of gateways
             experience = bent(random.Random(f"bent asked {seed}"), 6)
@@ -472,6 +474,26 @@ def bearings() -> Iterator[Query]:
             yield from exceptional(experience, truth, "no_path_axiom")
             draw = random.Random(experience.facts())
             yield from _asked(draw, experience, truth, "no_path_axiom")
+
+
+def about(experience: Experience, truth: Truth) -> Iterator[Query]:
+    """The same pairs of gateways in the other order, or in both; and a part of the experience."""
+    facts = experience.facts()
+    turned = re.sub(r"straight\((\d+),(\d+),(\d+)\)", r"straight(\1,\3,\2)", facts)
+    under = FORMS["paper"].relative_to(ENCODINGS)
+    stated = [*beyond(facts), *["beyond/tolerance"] * bool(experience.tolerance)]
+    told = tuple(str(under / name) for name in ("topomap", *stated))
+    how = tuple(experience.constants())
+    found = frozenset(((), ats(at)) for at in truth.final)
+    for files, text in (("topomap",), turned), (told, turned), (told, turned + facts):
+        yield Query(files, text, found, how)
+    sided = frozenset(((), ats(at)) for at in truth.having("boundary"))
+    yield Query(("topomap", "boundary"), turned, sided, how)
+    horizon = experience.steps // 2
+    cut = frozenset(((), ats(at)) for at in truth.levels[horizon])
+    how = (*how, "-c", f"horizon={horizon}")
+    for files in ("topomap",), told:
+        yield Query(files, facts, cut, how)
 
 
 def ats(at) -> frozenset[str]:
