@@ -519,8 +519,8 @@ def shapes(experience: Experience, truth: Truth, *more: str) -> Iterator[Query]:
         for form in forms(*parts):
             if (form, part, bool(experience.straight)) == ("paper", "boundary", True):
                 continue  # it has no left and right of paths whose gateways are told
-            if (form, part, bool(more)) == ("paper", "boundary", True):
-                continue  # nor of paths that come back
+            if form == "paper" and more and part in ("boundary", "perpendicular"):
+                continue  # it states them of paths that do not come back
             under = FORMS[form].relative_to(ENCODINGS)
             mine = told if form == "paper" else ()
             files = [str(under / name) for name in ("topomap", *mine, *parts)]
@@ -1132,7 +1132,7 @@ def further_bent() -> Iterator[Query]:
             among = [numbered(draw, one, False) for one in walks.bent(draw, among)]
             facts = bare(among)
         else:
-            experience, found = walks.drawn_bent(draw, 3, 5)
+            experience, found = walks.drawn_bent(draw, 3, 6)
             facts = experience.facts()
             for number, at in enumerate(found):
                 facts += "".join(f"map({number},{t},{p},{s}). " for t, (p, s) in enumerate(at))

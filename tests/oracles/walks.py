@@ -29,14 +29,20 @@ def drawn(draw, most=4, steps=8):
 
 def drawn_bent(draw, most, steps):
     """Some hypotheses, with or without the path axiom, of an experience with exact bearings where
-    pairs of gateways are told; or a compass."""
+    pairs of gateways are told, and matter; or a compass is."""
     while True:
         experience = bent_walk(draw, steps)
-        if experience.steps and not experience.tolerance:
-            if experience.straight or experience.compass:
-                found = sorted(Truth(experience, axiom=False).final)
-                if found:
-                    return experience, draw.sample(found, min(len(found), draw.randint(1, most)))
+        if experience.tolerance or not (experience.straight or experience.compass):
+            continue
+        found = sorted(Truth(experience, axiom=False).final)
+        found = draw.sample(found, min(len(found), most))
+        among = [standing(experience, at) for at in found]
+        bare = [replace(one, world=replace(one.world, across=None), compass={}) for one in among]
+        if any(
+            related(among[i], among[j], False) != related(bare[i], bare[j], False)
+            for i, j in combinations(range(len(among)), 2)
+        ):
+            return experience, found
 
 
 def bent(draw, among):
