@@ -1419,7 +1419,8 @@ def alone() -> Iterator[Query]:
     entries = ("phases/topomap", "phases/visits", "phases/runs", "phases/lines", "online")
     for file, text in sorted(texts.items()):
         if GUARD.search(text) and file not in entries:
-            yield Query((file,), defined, frozenset(), ("-c", "places=3"))
+            told = ("-c", "places=3", "-c", "tolerance=0")
+            yield Query((file,), defined, frozenset(), told)
     yield Query(("paper/bound",), defined, frozenset(), ("-c", "places=3"))
     # That no number is there has a message, and so is said by one that is too small.
     marker = f"{EXPERIENCES['marker'].facts()} #const with_marker = 0."
