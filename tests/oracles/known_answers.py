@@ -420,6 +420,19 @@ BENT = {
     "a compass round the circle": Experience(
         12, [[0, 4], [0], [0, 4], [0], [0, 4]], [0] * 4, compass=[0, None, 11, None, 1], tolerance=1
     ),
+    "a compass two off, from high slots": Experience(
+        *(12, [[0, 11], [0], [0, 1], [0], [0, 11]], [11, 0, 1, 0]),
+        compass=[None, None, 0, None, 11],
+        tolerance=1,
+    ),
+    "two off, from a high slot": Experience(12, [[0, 11], [0], [0, 11]], [11, 0], tolerance=1),
+    "one off, from a high slot": Experience(12, [[0, 11], [0], [0, 2]], [11, 0], tolerance=1),
+    "a landmark too much": Experience(
+        12, [[0], [0, 4], [0]], [0, 0], [(), (), ["a"]], tolerance=1
+    ),
+    "a landmark too few": Experience(
+        12, [[0], [0, 4], [0]], [0, 0], [["a"], (), ()], tolerance=1
+    ),
     "one opposite, and one not": Experience(8, [[0, 4], [0], [0, 5]], [0, 0], tolerance=1),
     "opposite, as told": replace(ROUND, straight=[[]] * 6),
     "all opposite": replace(EXPERIENCES["ahead"], straight=[[], [(0, 2)], BOTH]),
@@ -457,7 +470,7 @@ def bearings() -> Iterator[Query]:
             yield from shapes(experience, truth)
             yield from exceptional(experience, truth)
             yield from _asked(random.Random(experience.facts()), experience, truth)
-        if experience.straight and len(truth.final) < 60:
+        if (experience.straight or experience.tolerance) and len(truth.final) < 60:
             yield from about(experience, truth)
     for seed in range(20):
         for number in range(2):  # more of what is asked of gateways
