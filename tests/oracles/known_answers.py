@@ -441,7 +441,7 @@ BENT = {
     "ends at a corner": replace(CORNERS, straight=[[(0, 1)], [], [(0, 3)]]),
     # The path ends at gateway 0 of the first place, and another one has the gateway opposite to it.
     "a gateway opposite an end": Experience(
-        4, [[0, 1, 2], [0, 1], [0, 2], [0, 2, 3]], [2, 1, 0], straight=[[(1, 2)], [], [], [(0, 3)]]
+        4, [[0, 1, 2], [0, 1], [0, 2], [0, 2, 3]], [2, 1, 2], straight=[[(1, 2)], [], [], [(0, 3)]]
     ),
     "paths that bend": Experience(
         6,
