@@ -275,6 +275,8 @@ INSTANCES = {
     f"{ONE} straight(1,0,#inf).": "1,straight_slot(#inf)",
     f"{ONE} straight(a,0,0).": "-1,no_step(a)",
     f"{ONE} straight(-1,0,0).": "-1,no_step(-1)",
+    f"{ONE} straight(a,8,9).": "-1,no_step(a)",
+    "view(0,0). straight(0,a,0).": "-1,no_slots 0,straight_slot(a)",
     f"{ONE} straight(2,0,0).": "2,no_step",
     "slots(4). view(0,0). view(0,1). view(0,2). straight(0,0,1). straight(0,1,0).": "",
     "slots(4). view(0,0). view(0,1). view(0,2). straight(0,0,1). straight(0,2,1).": "0,two_pairs(1)",
