@@ -3,10 +3,11 @@
 import random
 from collections import Counter
 
+import clingo
 import pytest
 import topomap
 from answers.test_knowledge import ahead, searched
-from conftest import PARTS, ROOT, TRIED, Truth, answers, forms
+from conftest import ENCODINGS, PARTS, ROOT, TRIED, Truth, answers, forms
 from oracles.brute_force import Hypothesis, certain, tree
 from oracles.worlds import bent, told
 from topomap.model.experience import Experience
@@ -172,3 +173,18 @@ def test_lines_of_a_follower():
     other.step([0, 1])
     with pytest.raises(ValueError, match="from step 0 on, or not at all"):
         other.step([0, 1], 0, straight=[(0, 1)])
+
+
+def test_the_statement_says_when_it_has_no_left_and_right():
+    """With pairs of gateways, what needs left and right of paths has no model, and a message."""
+    seen = bent(random.Random("bent sides"), 5)
+    told = Experience(seen.slots, seen.views, seen.turns, straight=[[] for _ in seen.views])
+    for part in ("boundary", "beyond/exceptions"):
+        messages = []
+        control = clingo.Control(logger=lambda _, text, told=messages: told.append(text))
+        for file in ("topomap", "beyond/straight", part):
+            control.load(str(ENCODINGS / f"paper/{file}.lp"))
+        control.add("base", [], told.facts())
+        control.ground()
+        assert not control.solve().satisfiable
+        assert any("with_sides" in text for text in messages)
