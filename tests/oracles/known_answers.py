@@ -404,6 +404,17 @@ DRIFTING = Experience(12, [[0, 4, 8], [0], [0, 5, 7]], [0, 0])
 BENT = {
     "one slot off": replace(DRIFTING, tolerance=1),
     "one slot off, exactly": DRIFTING,
+    "a pair more": Experience(4, [[0, 1, 2], [0], [0, 1, 2]], [0, 0], straight=[[], [], [(0, 1)]]),
+    "a pair less": Experience(4, [[0, 1, 2], [0], [0, 1, 2]], [0, 0], straight=[[(0, 1)], [], []]),
+    "another pair": Experience(
+        4, [[0, 1, 2], [0], [0, 1, 2]], [0, 0], straight=[[(0, 1)], [], [(0, 2)]]
+    ),
+    "a pair more, not exactly": Experience(
+        4, [[0, 1, 2], [0], [0, 1, 2]], [0, 0], straight=[[], [], [(0, 1)]], tolerance=1
+    ),
+    "a pair less, not exactly": Experience(
+        4, [[0, 1, 2], [0], [0, 1, 2]], [0, 0], straight=[[(0, 1)], [], []], tolerance=1
+    ),
     # Each is within the tolerance of the first visit, and the two are twice that apart.
     "off to both sides": Experience(
         12, [[0, 4], [0], [0, 3], [0], [0, 5]], [0, 0, 0, 0], tolerance=1
@@ -599,6 +610,13 @@ def off_or_bent() -> Iterator[Query]:
     """What a step may break where pairs of gateways are told, or bearings are not exact, and each
     visit sees as many gateways. Where visits of one place take other gateways to be on one path, it
     is not defined what a path is; so nothing but views is then broken, or no view is."""
+    # The way back ends where two gateways are seen, and was one. (All else breaks more than the view.)
+    back = Experience(4, [[0], [0, 2], [0, 1]], [0, 0], tolerance=1)
+    for part in ("planar", "boundary", "no_path_axiom"):
+        found = shown("at(0,0,0)", "at(1,1,0)", "at(2,0,0)", "waived(view(2,0))")
+        how = (*back.constants(), "--opt-mode=ignore")
+        facts = f"{back.facts()} :- waived(R), R != view(2,0)."
+        yield Query(("topomap", "explain", part), facts, found, how)
     number = 0
     for seed in range(10_000):
         draw = random.Random(f"broken bent {seed}")
@@ -1022,7 +1040,12 @@ def faults() -> Iterator[Query]:
     """Instances with faults."""
     for facts, errors in INSTANCES.items():
         yield Query(("input",), facts, shown(*(f"error({error})" for error in errors.split())))
-    for tolerance, errors in ((-2, ["error(-1,negative_tolerance(-2))"]), (0, []), (3, [])):
+    for tolerance, errors in (
+        (-2, ["error(-1,negative_tolerance(-2))"]),
+        (-1, ["error(-1,negative_tolerance(-1))"]),
+        (0, []),
+        (3, []),
+    ):
         how = ("-c", f"tolerance={tolerance}")
         yield Query(("input",), "slots(4). view(0,0).", shown(*errors), how)
 
@@ -1436,8 +1459,23 @@ def alone() -> Iterator[Query]:
             yield Query((file,), defined, frozenset(), told)
     yield Query(("paper/bound",), defined, frozenset(), ("-c", "places=3"))
     # That no number is there has a message, and so is said by one that is too small.
-    marker = f"{EXPERIENCES['marker'].facts()} #const with_marker = 0."
-    yield Query(("paper/topomap",), marker, frozenset())
+    for file, told in (
+        ("marker", EXPERIENCES["marker"]),
+        ("lengths", KNOWN["length"]),
+        ("straight", BENT["all opposite"]),
+        ("tolerance", BENT["one slot off"]),
+    ):
+        facts, how = f"{told.facts()} #const with_{file} = 0.", tuple(told.constants())
+        yield Query(("paper/topomap",), facts, frozenset(), how)
+    sides = f"{BENT['all opposite'].facts()} #const with_sides = 0."
+    for part in ("paper/boundary", "paper/beyond/exceptions"):
+        yield Query(("paper/topomap", "paper/beyond/straight", part), sides, frozenset())
+    # A file of what is not told changes nothing.
+    for name in ("ahead", "lasso"):
+        found = frozenset(((), ats(at)) for at in Truth(EXPERIENCES[name]).final)
+        for file in ("straight", "tolerance", "compass"):
+            files = ("paper/topomap", f"paper/beyond/{file}")
+            yield Query(files, EXPERIENCES[name].facts(), found)
     # It has a map, and that one is closed.
     back = seen("0", "0: 0", "0: 0")
     pairs = "".join(f"{atom}. " for atom in phase_answers.Pairs(back).shown())

@@ -168,6 +168,11 @@ def bent_maps(number: int) -> Iterator[tuple[Experience, At]]:
     """Maps, with errors or without, where pairs of gateways are told, or bearings are not exact: of
     the very experience, and of one of which less is told, or less exactly; some with paths that come
     back."""
+    # Two circular paths through one place, neither with the other on both of its sides.
+    rings = Experience(
+        4, [[*range(4)]] * 3, [1, 2], straight=[[(0, 1), (2, 3)]] * 2 + [[(1, 2), (0, 3)]]
+    )
+    yield rings, [(0, 0, 0), (1, 0, 0), (2, 0, 3)]
     for seed in range(number):
         draw = random.Random(f"bent maps {seed}")
         experience = bent(draw, draw.choice([3, 5, 6, 8]))
@@ -275,6 +280,8 @@ INSTANCES = {
     f"{ONE} straight(1,0,#inf).": "1,straight_slot(#inf)",
     f"{ONE} straight(a,0,0).": "-1,no_step(a)",
     f"{ONE} straight(-1,0,0).": "-1,no_step(-1)",
+    f"{ONE} straight(a,8,9).": "-1,no_step(a)",
+    "view(0,0). straight(0,a,0).": "-1,no_slots 0,straight_slot(a)",
     f"{ONE} straight(2,0,0).": "2,no_step",
     "slots(4). view(0,0). view(0,1). view(0,2). straight(0,0,1). straight(0,1,0).": "",
     "slots(4). view(0,0). view(0,1). view(0,2). straight(0,0,1). straight(0,2,1).": "0,two_pairs(1)",
