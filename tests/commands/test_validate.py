@@ -192,6 +192,7 @@ def test_each_form_is_read_as_it_is_told():
         "K": "4",
         "T": "1",
         "S": "0",
+        "R": "0",
         "L": "a",
         "U": "0",
         "X": "3",
@@ -212,6 +213,7 @@ def test_each_form_is_read_as_it_is_told():
     assert (seen.drops, seen.markers, seen.picks) == ({1}, {1}, {2})
     assert (seen.starts, seen.looks, seen.same) == ({2}, {3}, {(0, 1)})
     assert (seen.compass[1], seen.shifts[0], seen.lengths[0]) == (0, (3, 4), 5)
+    assert len(seen.straight) == seen.steps + 1
     assert seen.things == {("drop", 1, "m"), ("pick", 2, "m"), ("marker", 1, "m")}
 
 

@@ -8,9 +8,7 @@ class Assignment:
     def __init__(self, experience, at, bound=None):
         self.experience, self.at, self.bound = experience, at, bound
         self.slots, self.half = experience.slots, experience.slots // 2
-        self.ways = [
-            (self.named(t, turn), at[t + 1]) for t, turn in enumerate(experience.turns)
-        ]
+        self.ways = [(self.named(t, turn), at[t + 1]) for t, turn in enumerate(experience.turns)]
         self.new = [step for step, (place, _) in enumerate(at) if place == step]
         self.linked = {end for way in self.ways for end in way}
 

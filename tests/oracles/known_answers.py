@@ -421,7 +421,9 @@ BENT = {
     ),
     "off too far": Experience(12, [[0, 4], [0], [0, 6]], [0, 0], tolerance=1),
     "the last slot": Experience(4, [[0, 1], [0], [0, 3]], [0, 0], tolerance=2),
-    "a turn of a slot off": Experience(12, [[0, 4, 8], [0], [0, 5, 7], [0]], [0, 0, 5], tolerance=1),
+    "a turn of a slot off": Experience(
+        12, [[0, 4, 8], [0], [0, 5, 7], [0]], [0, 0, 5], tolerance=1
+    ),
     "a compass one off": Experience(
         12, [[0, 4], [0], [0, 4]], [0, 0], compass=[3, None, 4], tolerance=1
     ),
@@ -438,17 +440,15 @@ BENT = {
     ),
     "two off, from a high slot": Experience(12, [[0, 11], [0], [0, 11]], [11, 0], tolerance=1),
     "one off, from a high slot": Experience(12, [[0, 11], [0], [0, 2]], [11, 0], tolerance=1),
-    "a landmark too much": Experience(
-        12, [[0], [0, 4], [0]], [0, 0], [(), (), ["a"]], tolerance=1
-    ),
-    "a landmark too few": Experience(
-        12, [[0], [0, 4], [0]], [0, 0], [["a"], (), ()], tolerance=1
-    ),
+    "a landmark too much": Experience(12, [[0], [0, 4], [0]], [0, 0], [(), (), ["a"]], tolerance=1),
+    "a landmark too few": Experience(12, [[0], [0, 4], [0]], [0, 0], [["a"], (), ()], tolerance=1),
     "one opposite, and one not": Experience(8, [[0, 4], [0], [0, 5]], [0, 0], tolerance=1),
     "opposite, as told": replace(ROUND, straight=[[]] * 6),
     "all opposite": replace(EXPERIENCES["ahead"], straight=[[], [(0, 2)], BOTH]),
     "round a corner": replace(EXPERIENCES["square"], straight=[*[[(0, 3)]] * 4, [(0, 1)]]),
-    "round once more": replace(EXPERIENCES["round"], straight=[*[[(0, 3)]] * 4, [(0, 1)], [(0, 3)]]),
+    "round once more": replace(
+        EXPERIENCES["round"], straight=[*[[(0, 3)]] * 4, [(0, 1)], [(0, 3)]]
+    ),
     "ends at a corner": replace(CORNERS, straight=[[(0, 1)], [], [(0, 3)]]),
     # The path ends at gateway 0 of the first place, and another one has the gateway opposite to it.
     "a gateway opposite an end": Experience(
@@ -474,7 +474,9 @@ def bearings() -> Iterator[Query]:
     cases = [places_of(name) for name in ("crescent", "oxbow", "loop")]
     drawn = [bent(random.Random(f"bearings {seed}"), 7) for seed in range(40)]
     drawn += [replace(informed(random.Random(f"off {seed}"), 5), tolerance=1) for seed in range(8)]
-    drawn += [replace(logs(random.Random(f"logs off {seed}"), 6), tolerance=1) for seed in range(12)]
+    drawn += [
+        replace(logs(random.Random(f"logs off {seed}"), 6), tolerance=1) for seed in range(12)
+    ]
     for experience in [*BENT.values(), *cases, *drawn]:
         truth = Truth(experience)
         if len(truth.final) < 60:
@@ -561,9 +563,7 @@ def exceptional(experience: Experience, truth: Truth, *more: str) -> Iterator[Qu
     stated = [str(under / name) for name in ("topomap", *stated, "beyond/exceptions")]
     for parts in ((), ("minimal",), ("closed", "minimal")):
         closed = [*truth.having(*(part for part in parts if part == "closed"))]
-        costs = {
-            at: (h.worth() if parts else h.worth()[:1]) for at, h in truth.final.items()
-        }
+        costs = {at: (h.worth() if parts else h.worth()[:1]) for at, h in truth.final.items()}
         options = (*how, "--opt-mode=enum,99,99,99") if parts else (*how, "--opt-mode=enum,99")
         named = frozenset((costs[at], ats(at) | exceptions_of(truth.final[at])) for at in closed)
         files = ("topomap", "exceptions", *parts, *more)
@@ -586,9 +586,7 @@ def exceptions_of(h: Hypothesis) -> frozenset[str]:
     for path in h.paths():
         ends = {*path} | {h.opposite(heading) for heading in path}
         steps = [
-            t
-            for t in range(1, len(h.at))
-            if isinstance(h.turns[t], int) and h.leaves(t) in ends
+            t for t in range(1, len(h.at)) if isinstance(h.turns[t], int) and h.leaves(t) in ends
         ]
         place, slot = min(end for end in ends if not isinstance(end[1], str))
         name = str(min(steps)) if steps else f"bare({place},{slot})"
@@ -1369,8 +1367,7 @@ def followed(number: int, experience: Experience, *loaded: str) -> Iterator[Quer
     if experience.starts:  # of several logs it is not followed what is planar
         bound, parts = 4, ("bound",)
     found = [
-        ((), atoms(at))
-        for at in truth.having(*parts[-1:] * (parts[-1] == "planar"), bound=bound)
+        ((), atoms(at)) for at in truth.having(*parts[-1:] * (parts[-1] == "planar"), bound=bound)
     ]
     few = () if bound is None else ("-c", f"places={bound}")
     yield asked(found, parts=parts, arguments=(*ignore, *few))

@@ -309,7 +309,8 @@ class Facts:
             for slot, end in (one, other), (other, one):
                 known = others.setdefault(slot, set())
                 if slots is not None and not 0 <= slot < slots:
-                    yield Fault(f"slot {slot} is not in 0..{slots - 1}", line, step)
+                    said = f"straight({step},{one},{other}): slot {slot} is not in 0..{slots - 1}"
+                    yield Fault(said, line, step)
                 elif not noisy and slot not in view:
                     said = f"straight({step},{one},{other}): no gateway in slot {slot}{HINT}"
                     yield Fault(said, line, step, lacks=True)
