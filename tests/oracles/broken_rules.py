@@ -18,8 +18,8 @@ class Assignment:
         return getattr(self, kind)(*numbers)
 
     def named(self, t, slot):
-        """The gateway of its place that visit t sees in this slot. Where bearings are not exact, those
-        of both are numbered clockwise from the one stood at, and are as many."""
+        """The gateway of its place that visit t sees in this slot. Where bearings are not exact,
+        those of both are numbered clockwise from the one stood at, and are as many."""
         place, gateway = self.at[t]
         if not self.experience.tolerance:
             return place, (gateway + slot) % self.slots

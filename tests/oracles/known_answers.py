@@ -608,7 +608,7 @@ def off_or_bent() -> Iterator[Query]:
     """What a step may break where pairs of gateways are told, or bearings are not exact, and each
     visit sees as many gateways. Where visits of one place take other gateways to be on one path, it
     is not defined what a path is; so nothing but views is then broken, or no view is."""
-    # The way back ends where two gateways are seen, and was one. (All else breaks more than the view.)
+    # The way back ends where two gateways are seen, and was one. (All else breaks more than that.)
     back = Experience(4, [[0], [0, 2], [0, 1]], [0, 0], tolerance=1)
     for part in ("planar", "boundary", "no_path_axiom"):
         found = shown("at(0,0,0)", "at(1,1,0)", "at(2,0,0)", "waived(view(2,0))")

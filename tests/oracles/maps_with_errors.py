@@ -166,8 +166,8 @@ def coming_back(number: int) -> Iterator[tuple[Experience, At]]:
 
 def bent_maps(number: int) -> Iterator[tuple[Experience, At]]:
     """Maps, with errors or without, where pairs of gateways are told, or bearings are not exact: of
-    the very experience, and of one of which less is told, or less exactly; some with paths that come
-    back."""
+    the very experience, and of one of which less is told, or less exactly; some with paths that
+    come back."""
     # Two circular paths through one place, neither with the other on both of its sides.
     rings = Experience(
         4, [[*range(4)]] * 3, [1, 2], straight=[[(0, 1), (2, 3)]] * 2 + [[(1, 2), (0, 3)]]
@@ -192,6 +192,7 @@ def bent_maps(number: int) -> Iterator[tuple[Experience, At]]:
 
 
 # Facts, and the errors that input.lp shows.
+THREE = "slots(4). view(0,0). view(0,1). view(0,2)."
 ONE = "slots(4). view(0,0). turn(1,0). view(1,0)."
 INSTANCES = {
     "slots(4). view(0,0).": "",
@@ -283,10 +284,10 @@ INSTANCES = {
     f"{ONE} straight(a,8,9).": "-1,no_step(a)",
     "view(0,0). straight(0,a,0).": "-1,no_slots 0,straight_slot(a)",
     f"{ONE} straight(2,0,0).": "2,no_step",
-    "slots(4). view(0,0). view(0,1). view(0,2). straight(0,0,1). straight(0,1,0).": "",
-    "slots(4). view(0,0). view(0,1). view(0,2). straight(0,0,1). straight(0,2,1).": "0,two_pairs(1)",
-    "slots(4). view(0,0). view(0,1). view(0,2). straight(0,0,1). straight(0,1,1).": "0,two_pairs(1)",
-    "slots(4). view(0,0). view(0,1). view(0,2). straight(0,1,2). straight(0,2,2).": "0,two_pairs(2)",
+    f"{THREE} straight(0,0,1). straight(0,1,0).": "",
+    f"{THREE} straight(0,0,1). straight(0,2,1).": "0,two_pairs(1)",
+    f"{THREE} straight(0,0,1). straight(0,1,1).": "0,two_pairs(1)",
+    f"{THREE} straight(0,1,2). straight(0,2,2).": "0,two_pairs(2)",
     "slots(4). view(0,0). view(0,3). straight(0,3,0).": "",
     "view(0,0). straight(0,2147483647,0).": "-1,no_slots 0,no_pair(2147483647)",
     f"{ONE} start(0).": "0,starts_already",
