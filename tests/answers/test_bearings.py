@@ -3,10 +3,11 @@
 import random
 from collections import Counter
 
+import clingo
 import pytest
 import topomap
-from answers.test_knowledge import ahead, searched
-from conftest import PARTS, ROOT, TRIED, Truth, answers, forms
+from answers.test_knowledge import ahead, searched, small
+from conftest import ENCODINGS, PARTS, ROOT, TRIED, Truth, answers, forms
 from oracles.brute_force import Hypothesis, certain, tree
 from oracles.worlds import bent, told
 from topomap.model.experience import Experience
@@ -14,6 +15,8 @@ from topomap.model.facts import parse
 from topomap.runtime.errors import InputError
 from topomap.runtime.watch import Watch
 from topomap.solver.online import OnlineSolver
+
+MOST = 500  # maps of a random experience
 
 
 def agree(seen):
@@ -72,6 +75,8 @@ def test_random_worlds(block):
     kinds = Counter()
     for number in range(25):
         seen = bent(random.Random(f"bent {block}/{number}"), 7)
+        if not small(seen, MOST):
+            continue
         maps = len(agree(seen).final)
         kinds.update({"pairs": bool(seen.straight), "errors": bool(seen.tolerance)})
         kinds["both"] += bool(seen.straight and seen.tolerance and maps > 1)
@@ -81,15 +86,24 @@ def test_random_worlds(block):
 
 def test_without_the_path_axiom():
     for number in range(25):
-        agree_without_axiom(bent(random.Random(f"bent without the axiom {number}"), 6))
+        seen = bent(random.Random(f"bent without the axiom {number}"), 6)
+        if small(seen, MOST, "no_path_axiom"):
+            agree_without_axiom(seen)
 
 
 @pytest.mark.long
 @pytest.mark.parametrize("block", range(5))
 def test_many_random_worlds(block):
-    for number in range(200):
-        agree(bent(random.Random(f"many bent {block}/{number}"), 9))
-        agree_without_axiom(bent(random.Random(f"many bent freely {block}/{number}"), 7))
+    left_out = 0
+    for number in range(60):
+        seen = bent(random.Random(f"many bent {block}/{number}"), 9)
+        free = bent(random.Random(f"many bent freely {block}/{number}"), 7)
+        if small(seen, MOST):
+            agree(seen)
+        if small(free, MOST, "no_path_axiom"):
+            agree_without_axiom(free)
+        left_out += not small(seen, MOST)
+    assert left_out < 20
 
 
 DRIFT = ROOT / "tests/cases/drift.lp"
@@ -172,3 +186,18 @@ def test_lines_of_a_follower():
     other.step([0, 1])
     with pytest.raises(ValueError, match="from step 0 on, or not at all"):
         other.step([0, 1], 0, straight=[(0, 1)])
+
+
+def test_the_statement_says_when_it_has_no_left_and_right():
+    """With pairs of gateways, what needs left and right of paths has no model, and a message."""
+    seen = bent(random.Random("bent sides"), 5)
+    told = Experience(seen.slots, seen.views, seen.turns, straight=[[] for _ in seen.views])
+    for part in ("boundary", "beyond/exceptions"):
+        messages = []
+        control = clingo.Control(logger=lambda _, text, told=messages: told.append(text))
+        for file in ("topomap", "beyond/straight", part):
+            control.load(str(ENCODINGS / f"paper/{file}.lp"))
+        control.add("base", [], told.facts())
+        control.ground()
+        assert not control.solve().satisfiable
+        assert any("with_sides" in text for text in messages)

@@ -156,7 +156,7 @@ def test_which_axioms_and_defaults_a_map_breaks():
         maps = [{"at": [[step, *dstate] for step, dstate in enumerate(at)]} for at in ats]
         judged = topomap.check(experience, maps, every=True)
         assert judged
-        told = judged.document()["maps"]
+        told = judged.document()["judged"]
         for verdict, at, said in zip(judged.verdicts, ats, told, strict=True):
             whole = Hypothesis(world, at)
             broken = {name for name, keeps in AXIOMS.items() if not keeps(whole)}
@@ -218,7 +218,7 @@ def test_the_exceptions_that_a_file_tells_are_verified(inside, tmp_path):
     document = json.loads(maps.read_text())
     done = json.loads(inside("check", oxbow, maps, "--json").stdout)
     assert done["unsound"] == []
-    (told,), (one,) = done["maps"], document["maps"]
+    (told,), (one,) = done["judged"], document["maps"]
     said = one["exceptions"]
     assert told["exceptions"] == said
     fault = "exceptions: not what at says"

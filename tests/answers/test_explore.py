@@ -63,7 +63,7 @@ def holds(among, made):
             here = None if here == "end" else here
             look = what and (
                 *(tuple(sorted(what.view)), tuple(sorted(what.landmarks))),
-                *(what.marker, what.compass),
+                *(what.marker, what.compass, tuple(sorted(what.straight or ()))),
             )
             assert look == (sight(one, here) if here else None)
     assert sorted(n for same in made.classes for n in same) == list(range(len(among)))

@@ -41,11 +41,11 @@ def ahead(experience, *parts):
     return {one.at for one in found if one is not None}
 
 
-def small(experience):
-    """Whether there are at most MOST maps: all ways to all of more take too long."""
-    nodes = depth_first(root(experience, Query()))
+def small(experience, most=MOST, *parts):
+    """Whether there are at most so many maps: all ways to all of more take too long."""
+    nodes = depth_first(root(experience, Query(frozenset(parts))))
     whole = (node for node in nodes if node.steps == experience.steps)
-    return sum(1 for _ in islice(whole, MOST + 1)) <= MOST
+    return sum(1 for _ in islice(whole, most + 1)) <= most
 
 
 def agree(experience):

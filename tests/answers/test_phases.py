@@ -578,3 +578,11 @@ def test_there_are_no_phases_where_views_may_be_wrong():
     asked = Query(frozenset(["closed", "perpendicular"]))
     assert phases.serve(snake, asked)
     assert not phases.serve(snake, replace(asked, noise=1))
+
+
+def test_phases_are_silent(topomap):
+    """Clingo has nothing to say of the program of a phase, such as of a constant of no value."""
+    asked = "solve", "instances/grid-4x4-snake.lp", "--closed", "--perpendicular", "--by"
+    found = {by: topomap(*asked, by) for by in ("clingo", "search")}
+    assert [one.stderr for one in found.values()] == ["", ""]
+    assert {one.stdout.count("map ") for one in found.values()} == {256}

@@ -205,7 +205,7 @@ def test_equation_1_node_by_node_from_scratch():
         facts = experience.slots, experience.views, (None, *experience.turns), ()
         for node in planar_nodes(experience):
             tested += 1
-            slow = Slow((*facts[:3], experience.landmarks), node.at)
+            slow = Slow((*facts[:3], experience.landmarks, (), ()), node.at)
             out = slow.at[-1][0], (slow.at[-1][1] + slow.turns[node.step]) % slow.slots
             pending = slow.pending()
             face = [g for g in pending if slow.one_face(out, g)]

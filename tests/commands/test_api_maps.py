@@ -282,7 +282,7 @@ def test_others_that_are_cut_say_so(most):
     assert cut.tour in (None, whole.tour)
     assert (most == 0) <= (cut.tour is None)
     assert (whole.fault, whole.tour) == (None, 28)
-    made = Outcome(world, ((0, 0), 1), SEEN, (), "settled", True, cut, True)
+    made = Outcome(world, ((0, 0), 1), SEEN, (), "settled", True, cut, True, Query())
     assert made.fault == "timeout"
     assert made.document()["tour"] == cut.tour
 

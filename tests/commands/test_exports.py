@@ -87,7 +87,9 @@ def agrees(tmp_path, seen, scene):
         assert document["instance"] == scene.name
     (verdict,) = verdicts(seen, [maps.document("made", document)], [], None)
     original = json.loads(json.dumps({"maps": [map_json(scene.world, scene.at)]}))
-    assert [verdict] == list(verdicts(seen, [maps.document("made", original)], [], None))
+    (other,) = verdicts(seen, [maps.document("made", original)], [], None)
+    # Where maps are said to be the best ones, their exceptions are told, too.
+    assert replace(verdict, exceptions=None) == other
     assert not verdict.short
     return verdict.sound
 

@@ -232,7 +232,7 @@ BAD = [
     (
         '{"turn": 0, "view": [0], "sound": 1}',
         '"sound": not one of apart, compass, drop, landmarks, length, look, marker, pick, same, '
-        "shift, start, turn, view",
+        "shift, start, straight, turn, view",
     ),
     ('{"turn": true, "view": [0]}', "turn: a whole number is wanted"),
     ('{"turn": 0, "view": 0}', "view: a list of slots is wanted"),

@@ -8,10 +8,7 @@ class Assignment:
     def __init__(self, experience, at, bound=None):
         self.experience, self.at, self.bound = experience, at, bound
         self.slots, self.half = experience.slots, experience.slots // 2
-        self.ways = [
-            ((at[t][0], (at[t][1] + turn) % self.slots), at[t + 1])
-            for t, turn in enumerate(experience.turns)
-        ]
+        self.ways = [(self.named(t, turn), at[t + 1]) for t, turn in enumerate(experience.turns)]
         self.new = [step for step, (place, _) in enumerate(at) if place == step]
         self.linked = {end for way in self.ways for end in way}
 
@@ -20,11 +17,47 @@ class Assignment:
         numbers = [int(n) for n in rest.rstrip(")").split(",")] if rest else []
         return getattr(self, kind)(*numbers)
 
+    def named(self, t, slot):
+        """The gateway of its place that visit t sees in this slot. Where bearings are not exact,
+        those of both are numbered clockwise from the one stood at, and are as many."""
+        place, gateway = self.at[t]
+        if not self.experience.tolerance:
+            return place, (gateway + slot) % self.slots
+        star = sorted(self.experience.views[place])
+        return place, star[
+            (star.index(gateway) + sorted(self.experience.views[t]).index(slot)) % len(star)
+        ]
+
     def view(self, t, p):
-        turn, views, signs = self.at[t][1] - self.at[p][1], self.experience.views, self.experience
-        turned = {(s + turn) % self.slots for s in views[t]}
-        same = turned == set(views[p]) and signs.landmarks[t] == signs.landmarks[p]
-        return self.at[t][0] == self.at[p][0] and not same
+        if self.at[t][0] != self.at[p][0]:
+            return False
+        seen, inexact = self.experience, self.experience.tolerance
+        here, there = ({self.named(v, s) for s in seen.views[v]} for v in (t, p))
+        if here != there or seen.landmarks[t] != seen.landmarks[p]:
+            return True
+        if self.at[p][0] == p and inexact:
+            turns = ((self.named(t, s)[1] - self.at[t][1] - s) % self.slots for s in seen.views[t])
+            if any(min(turn, self.slots - turn) > inexact for turn in turns):
+                return True
+        return self.pairs(t) != self.pairs(p)
+
+    def pairs(self, t):
+        """Which gateways of its place visit t takes to be on one path."""
+        seen = self.experience
+        told = seen.straight[t] if seen.straight else ()
+        if not seen.straight:
+            told = [(s, s + self.half) for s in seen.views[t] if s + self.half in seen.views[t]]
+        return {frozenset(self.named(t, s) for s in pair) for pair in told}
+
+    def axis(self, gateway):
+        """The gateways on one path with this one at its place, as its first visit has it; where
+        opposite ones are, and bearings are exact, whether they are seen or not."""
+        place, slot = gateway
+        seen = self.experience
+        if not seen.straight and not seen.tolerance:
+            return frozenset([gateway, (place, (slot + self.half) % self.slots)])
+        told = [pair for pair in self.pairs(place) if gateway in pair]
+        return told[0] if told else frozenset([gateway])
 
     def marker(self, t):
         e, down = self.experience, None
@@ -39,7 +72,9 @@ class Assignment:
         zeros = {
             (slot - self.at[v][1]) % self.slots for v, slot in slots.items() if slot is not None
         }
-        return self.at[t][0] == self.at[u][0] and len(zeros) > 1
+        off = {(one - other) % self.slots for one in zeros for other in zeros}
+        far = any(min(d, self.slots - d) > self.experience.tolerance for d in off)
+        return self.at[t][0] == self.at[u][0] and far
 
     def odometry(self, t, u):
         moved = self.experience.shifts[t:u]
@@ -75,17 +110,22 @@ class Assignment:
         return out == end
 
     def runs(self):
-        """Of each run the slots for which it heads at its visits."""
-        runs = {}
-        for t, ((_, out), (_, slot)) in enumerate(self.ways, 1):
-            if t == 1 or self.experience.turns[t - 1] != self.half:
+        """Of each run the gateways by which it passes its visits: by which it leaves the first one,
+        and arrives at the others."""
+        runs, seen = {}, self.experience
+        for t, (out, arrival) in enumerate(self.ways, 1):
+            turn = seen.turns[t - 1]
+            on = turn == self.half
+            if seen.straight:
+                on = turn != 0 and tuple(sorted((0, turn))) in seen.straight[t - 1]
+            if t == 1 or not on:
                 runs[t] = {t - 1: out}
                 last = t
-            runs[last][t] = (slot + self.half) % self.slots
+            runs[last][t] = arrival
         return runs
 
     def axes(self, run):
-        return {(self.at[t][0], slot % self.half) for t, slot in self.runs()[run].items()}
+        return {(gateway[0], self.axis(gateway)) for gateway in self.runs()[run].values()}
 
     def path(self, run):
         """The runs on one path with it."""
@@ -107,12 +147,10 @@ class Assignment:
         )
 
     def circular(self, a):
-        runs = self.runs()
-        ends = {(self.at[t][0], slot) for run in self.path(a) for t, slot in runs[run].items()} | {
-            (self.at[run - 1][0], (runs[run][run - 1] + self.half) % self.slots)
-            for run in self.path(a)
-        }
-        return a in runs and a == min(self.path(a)) and ends <= self.linked
+        if a not in self.runs() or a != min(self.path(a)):
+            return False
+        axes = [axis for run in self.path(a) for _, axis in self.axes(run)]
+        return all(len(axis) > 1 and axis <= self.linked for axis in axes)
 
     def fresh(self, t):
         return not any(self.ways[t - 1][0] in way for way in self.ways[: t - 1])
@@ -167,7 +205,12 @@ class Assignment:
 
 
 def assignments(experience):
-    """All dstates by step that are named by first visits."""
+    """All dstates by step that are named by first visits; where bearings are not exact, the
+    gateways are those of the first visit."""
+
+    def gateways(place):
+        return sorted(experience.views[place]) if experience.tolerance else range(experience.slots)
+
     ats = [((0, 0),)]
     for step in range(1, experience.steps + 1):
         ats = [
@@ -175,7 +218,7 @@ def assignments(experience):
             for at in ats
             for dstate in [
                 (step, 0),
-                *((p, s) for p, q in enumerate(at) if p == q[0] for s in range(experience.slots)),
+                *((p, s) for p, q in enumerate(at) if p == q[0] for s in gateways(p)),
             ]
         ]
     return ats

@@ -216,8 +216,9 @@ class Hypothesis:
                 for t in range(1, len(self.at))
                 if self.turns[t] not in RESTS and self.leaves(t) in ends
             ]
-            axis = min((p, s) for p, s in ends if not isinstance(s, str))
-            paths.add(("first", steps[0]) if steps else ("axis", *axis))
+            place, slot = min((p, s) for p, s in ends if not isinstance(s, str))
+            slot = slot if self.told else slot % (self.slots // 2)
+            paths.add(("first", steps[0]) if steps else ("axis", place, slot))
         return frozenset(paths), frozenset(self.stars)
 
 

@@ -31,6 +31,12 @@ KINDS = {  # what topomap.model.experience says, and the error that says the sam
     r".*: a step is a whole number": r"-?\d+,no_step\(.*\)",
     r".* a step and a slot are whole numbers": r"-?\d+,(no_step|(compass_)?slot)\(.*\)",
     r".* a step, and how far it moved, are whole numbers": r"-?\d+,no_(step|shift)\(.*\)",
+    r".* a step and two slots are whole numbers": r"-?\d+,(no_step|straight_slot)\(.*\)",
+    r"step (?P<T>\d+): straight\(.*\): slot (?P<S>-?\d+) is not in .*": (
+        r"{T},straight_slot\({S}\)"
+    ),
+    r"step (?P<T>\d+): straight\(.*\): no gateway in slot (?P<S>\d+) .*": r"{T},no_pair\({S}\)",
+    r"step (?P<T>\d+): gateway (?P<S>\d+) is in more than one pair": r"{T},two_pairs\({S}\)",
     r".* a step and its length are whole numbers": r"-?\d+,no_(step|length)\(.*\)",
     r"step (?P<T>\d+): compass slot (?P<S>-?\d+) is not in .*": r"{T},compass_slot\({S}\)",
     r"step (?P<T>\d+): more than one compass": "{T},two_compasses",

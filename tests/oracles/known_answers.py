@@ -12,9 +12,10 @@ from dataclasses import dataclass, replace
 from functools import cache, partial
 from itertools import combinations, product
 
-from conftest import ENCODINGS, PARTS, Truth, beyond, forms
+from conftest import ENCODINGS, PARTS, ROOT, Truth, beyond, forms
 from topomap.documents.check import NO_PATH_AXIOM, STEP_RULES, by_definition, by_rules
 from topomap.model.experience import MARKER, Experience, observe
+from topomap.model.facts import parse
 from topomap.model.topology import TopologicalMap
 from topomap.questions.standings import Standing
 from topomap.solver.programs import FORMS
@@ -24,10 +25,18 @@ from topomap.worlds.route import snake
 from oracles import phase_answers, walks
 from oracles.broken_rules import Assignment, assignments, reasons
 from oracles.brute_force import Hypothesis
-from oracles.maps_with_errors import DEMANDS, INSTANCES, by_hand, coming_back, contradicting, drawn
+from oracles.maps_with_errors import (
+    DEMANDS,
+    INSTANCES,
+    bent_maps,
+    by_hand,
+    coming_back,
+    contradicting,
+    drawn,
+)
 from oracles.misreadings import brute, corrupted, expected
 from oracles.statements import FIGURES, PROPERTIES, QUALITIES, RELATIONS, relation
-from oracles.worlds import WORLDS, informed, logs, of_grid, random_experience, walked
+from oracles.worlds import WORLDS, bent, informed, logs, of_grid, random_experience, walked
 
 
 def seen(*steps, slots=4):
@@ -389,6 +398,276 @@ LOGS = {
 }
 
 
+# Pairs of gateways that are told, and bearings that are not exact: each at its border.
+BOTH = [(0, 2), (1, 3)]  # all that are opposite, of four
+DRIFTING = Experience(12, [[0, 4, 8], [0], [0, 5, 7]], [0, 0])
+BENT = {
+    "one slot off": replace(DRIFTING, tolerance=1),
+    "one slot off, exactly": DRIFTING,
+    "a pair more": Experience(4, [[0, 1, 2], [0], [0, 1, 2]], [0, 0], straight=[[], [], [(0, 1)]]),
+    "a pair less": Experience(4, [[0, 1, 2], [0], [0, 1, 2]], [0, 0], straight=[[(0, 1)], [], []]),
+    "another pair": Experience(
+        4, [[0, 1, 2], [0], [0, 1, 2]], [0, 0], straight=[[(0, 1)], [], [(0, 2)]]
+    ),
+    "a pair more, not exactly": Experience(
+        4, [[0, 1, 2], [0], [0, 1, 2]], [0, 0], straight=[[], [], [(0, 1)]], tolerance=1
+    ),
+    "a pair less, not exactly": Experience(
+        4, [[0, 1, 2], [0], [0, 1, 2]], [0, 0], straight=[[(0, 1)], [], []], tolerance=1
+    ),
+    # Each is within the tolerance of the first visit, and the two are twice that apart.
+    "off to both sides": Experience(
+        12, [[0, 4], [0], [0, 3], [0], [0, 5]], [0, 0, 0, 0], tolerance=1
+    ),
+    "off too far": Experience(12, [[0, 4], [0], [0, 6]], [0, 0], tolerance=1),
+    "the last slot": Experience(4, [[0, 1], [0], [0, 3]], [0, 0], tolerance=2),
+    "a turn of a slot off": Experience(
+        12, [[0, 4, 8], [0], [0, 5, 7], [0]], [0, 0, 5], tolerance=1
+    ),
+    "a compass one off": Experience(
+        12, [[0, 4], [0], [0, 4]], [0, 0], compass=[3, None, 4], tolerance=1
+    ),
+    "a compass two off": Experience(
+        12, [[0, 4], [0], [0, 4]], [0, 0], compass=[3, None, 5], tolerance=1
+    ),
+    "a compass round the circle": Experience(
+        12, [[0, 4], [0], [0, 4], [0], [0, 4]], [0] * 4, compass=[0, None, 11, None, 1], tolerance=1
+    ),
+    "a compass two off, from high slots": Experience(
+        *(12, [[0, 11], [0], [0, 1], [0], [0, 11]], [11, 0, 1, 0]),
+        compass=[None, None, 0, None, 11],
+        tolerance=1,
+    ),
+    "two off, from a high slot": Experience(12, [[0, 11], [0], [0, 11]], [11, 0], tolerance=1),
+    "one off, from a high slot": Experience(12, [[0, 11], [0], [0, 2]], [11, 0], tolerance=1),
+    "a landmark too much": Experience(12, [[0], [0, 4], [0]], [0, 0], [(), (), ["a"]], tolerance=1),
+    "a landmark too few": Experience(12, [[0], [0, 4], [0]], [0, 0], [["a"], (), ()], tolerance=1),
+    "one opposite, and one not": Experience(8, [[0, 4], [0], [0, 5]], [0, 0], tolerance=1),
+    "opposite, as told": replace(ROUND, straight=[[]] * 6),
+    "all opposite": replace(EXPERIENCES["ahead"], straight=[[], [(0, 2)], BOTH]),
+    "round a corner": replace(EXPERIENCES["square"], straight=[*[[(0, 3)]] * 4, [(0, 1)]]),
+    "round once more": replace(
+        EXPERIENCES["round"], straight=[*[[(0, 3)]] * 4, [(0, 1)], [(0, 3)]]
+    ),
+    "ends at a corner": replace(CORNERS, straight=[[(0, 1)], [], [(0, 3)]]),
+    # The path ends at gateway 0 of the first place, and another one has the gateway opposite to it.
+    "a gateway opposite an end": Experience(
+        4, [[0, 1, 2], [0, 1], [0, 2], [0, 2, 3]], [2, 1, 2], straight=[[(1, 2)], [], [], [(0, 3)]]
+    ),
+    "paths that bend": Experience(
+        6,
+        [[0, 1, 3], [0, 2], [0, 2], [0, 3, 4], [0, 2], [0, 1]],
+        [1, 2, 2, 3, 2],
+        straight=[[(0, 1)], [(0, 2)], [], [(0, 4)], [(0, 2)], []],
+    ),
+}
+
+
+def places_of(name):
+    """A walk through a smallest case of tests/cases."""
+    return parse((ROOT / f"tests/cases/{name}.lp").read_text(), name)
+
+
+def bearings() -> Iterator[Query]:
+    """Experiences where pairs of gateways are told, or bearings are not exact, with the path axiom
+    and without it; and others without it."""
+    cases = [places_of(name) for name in ("crescent", "oxbow", "loop")]
+    drawn = [bent(random.Random(f"bearings {seed}"), 7) for seed in range(40)]
+    drawn += [replace(informed(random.Random(f"off {seed}"), 5), tolerance=1) for seed in range(8)]
+    drawn += [
+        replace(logs(random.Random(f"logs off {seed}"), 6), tolerance=1) for seed in range(12)
+    ]
+    for experience in [*BENT.values(), *cases, *drawn]:
+        truth = Truth(experience)
+        if len(truth.final) < 60:
+            yield from shapes(experience, truth)
+            yield from exceptional(experience, truth)
+            yield from _asked(random.Random(experience.facts()), experience, truth)
+        if (experience.straight or experience.tolerance) and len(truth.final) < 60:
+            yield from about(experience, truth)
+    for seed in range(20):
+        for number in range(2):  # more of what is asked of gateways
+            experience = bent(random.Random(f"bent asked {seed}"), 6)
+            truth = Truth(experience)
+            if len(truth.final) < 60:
+                yield from _asked(random.Random(f"{number} {seed}"), experience, truth)
+    loose = [bent(random.Random(f"bearings, no axiom {seed}"), 6) for seed in range(25)]
+    loose += [random_experience(random.Random(f"no axiom {seed}"), 6) for seed in range(20)]
+    for experience in [*BENT.values(), *cases[2:], *loose]:
+        truth = Truth(experience, axiom=False)
+        if len(truth.final) < 60:
+            yield from shapes(experience, truth, "no_path_axiom")
+            yield from exceptional(experience, truth, "no_path_axiom")
+            draw = random.Random(experience.facts())
+            yield from _asked(draw, experience, truth, "no_path_axiom")
+
+
+def about(experience: Experience, truth: Truth) -> Iterator[Query]:
+    """The same pairs of gateways in the other order, or in both; and a part of the experience."""
+    facts = experience.facts()
+    turned = re.sub(r"straight\((\d+),(\d+),(\d+)\)", r"straight(\1,\3,\2)", facts)
+    under = FORMS["paper"].relative_to(ENCODINGS)
+    stated = [*beyond(facts), *["beyond/tolerance"] * bool(experience.tolerance)]
+    told = tuple(str(under / name) for name in ("topomap", *stated))
+    how = tuple(experience.constants())
+    found = frozenset(((), ats(at)) for at in truth.final)
+    for files, text in (("topomap",), turned), (told, turned), (told, turned + facts):
+        yield Query(files, text, found, how)
+    sided = frozenset(((), ats(at)) for at in truth.having("boundary"))
+    yield Query(("topomap", "boundary"), turned, sided, how)
+    horizon = experience.steps // 2
+    cut = frozenset(((), ats(at)) for at in truth.levels[horizon])
+    how = (*how, "-c", f"horizon={horizon}")
+    for files in ("topomap",), told:
+        yield Query(files, facts, cut, how)
+
+
+def ats(at) -> frozenset[str]:
+    """The atoms of a hypothesis."""
+    return frozenset(f"at({t},{p},{s})" for t, (p, s) in enumerate(at))
+
+
+def shapes(experience: Experience, truth: Truth, *more: str) -> Iterator[Query]:
+    """All hypotheses, those of each part, and the best, of each form of the encodings that has
+    what is told."""
+    facts, how = experience.facts(), tuple(experience.constants())
+    told = [*beyond(facts), *["beyond/tolerance"] * bool(experience.tolerance)]
+    best = {"minimal": Hypothesis.cost, "genus": lambda h: (h.genus(),)}
+    for part in ("", *PARTS, *best):
+        parts = (part,) if part else ()
+        if part in best:
+            found = truth.least(best[part], truth.final)
+            answers = frozenset((best[part](truth.final[at]), ats(at)) for at in found)
+            options = (*how, "--opt-mode=optN")
+        else:
+            answers = frozenset(((), ats(at)) for at in truth.having(*parts))
+            options = how
+        for form in forms(*parts):
+            if (form, part, bool(experience.straight)) == ("paper", "boundary", True):
+                continue  # it has no left and right of paths whose gateways are told
+            if form == "paper" and more and part in ("boundary", "perpendicular"):
+                continue  # it states them of paths that do not come back
+            under = FORMS[form].relative_to(ENCODINGS)
+            mine = told if form == "paper" else ()
+            files = [str(under / name) for name in ("topomap", *mine, *parts)]
+            yield Query((*files, *more), facts, answers, options)
+    bound = frozenset(((), ats(at)) for at in truth.having(bound=2))
+    yield Query(("topomap", "bound", *more), facts, bound, (*how, "-c", "places=2"))
+
+
+def exceptional(experience: Experience, truth: Truth, *more: str) -> Iterator[Query]:
+    """The exceptions of each map, and the maps that are best with them."""
+    facts, how = experience.facts(), tuple(experience.constants())
+    under = FORMS["paper"].relative_to(ENCODINGS)
+    stated = [*beyond(facts), *["beyond/tolerance"] * bool(experience.tolerance)]
+    stated = [str(under / name) for name in ("topomap", *stated, "beyond/exceptions")]
+    for parts in ((), ("minimal",), ("closed", "minimal")):
+        closed = [*truth.having(*(part for part in parts if part == "closed"))]
+        costs = {at: (h.worth() if parts else h.worth()[:1]) for at, h in truth.final.items()}
+        options = (*how, "--opt-mode=enum,99,99,99") if parts else (*how, "--opt-mode=enum,99")
+        named = frozenset((costs[at], ats(at) | exceptions_of(truth.final[at])) for at in closed)
+        files = ("topomap", "exceptions", *parts, *more)
+        yield Query(files, facts, named, options)
+        least = min((costs[at] for at in closed), default=())
+        best = frozenset(one for one in named if one[0] == least)
+        yield Query(files, facts, best, (*how, "--opt-mode=optN"))
+        if not experience.straight:
+            files = (*stated, *(str(under / part) for part in parts), *more)
+            plain = frozenset((costs[at], ats(at)) for at in closed)
+            yield Query(files, facts, plain, options)
+            best = frozenset((costs[at], ats(at)) for at in closed if costs[at] == least)
+            yield Query(files, facts, best, (*how, "--opt-mode=optN"))
+
+
+def exceptions_of(h: Hypothesis) -> frozenset[str]:
+    """The exceptions of a map as exceptions.lp names them: a path by its first run, or by its place
+    and lower slot there if no step went along it."""
+    named = []
+    for path in h.paths():
+        ends = {*path} | {h.opposite(heading) for heading in path}
+        steps = [
+            t for t in range(1, len(h.at)) if isinstance(h.turns[t], int) and h.leaves(t) in ends
+        ]
+        place, slot = min(end for end in ends if not isinstance(end[1], str))
+        name = str(min(steps)) if steps else f"bare({place},{slot})"
+        named.append((name, path))
+    found = set()
+    for (one, here), (other, there) in combinations(named, 2):
+        if len({place for place, _ in here} & {place for place, _ in there}) > 1:
+            first, second = sorted((int(one), int(other)))
+            found.add(f"exception(meet_twice({first},{second}))")
+    for name, path in named:
+        if len({place for place, _ in path}) < len(path):
+            found.add(f"exception(place_twice({name}))")
+    for (name, _), (_, right, left) in zip(named, h.sides(), strict=True):
+        found |= {f"exception(both_sides({name},{place}))" for place in right & left}
+    return frozenset(found)
+
+
+def off_or_bent() -> Iterator[Query]:
+    """What a step may break where pairs of gateways are told, or bearings are not exact, and each
+    visit sees as many gateways. Where visits of one place take other gateways to be on one path, it
+    is not defined what a path is; so nothing but views is then broken, or no view is."""
+    # The way back ends where two gateways are seen, and was one. (All else breaks more than that.)
+    back = Experience(4, [[0], [0, 2], [0, 1]], [0, 0], tolerance=1)
+    for part in ("planar", "boundary", "no_path_axiom"):
+        found = shown("at(0,0,0)", "at(1,1,0)", "at(2,0,0)", "waived(view(2,0))")
+        how = (*back.constants(), "--opt-mode=ignore")
+        facts = f"{back.facts()} :- waived(R), R != view(2,0)."
+        yield Query(("topomap", "explain", part), facts, found, how)
+    number = 0
+    for seed in range(10_000):
+        draw = random.Random(f"broken bent {seed}")
+        experience = bent(draw, 3)
+        if not experience.steps or len({*map(len, experience.views)}) > 1 or experience.slots > 8:
+            continue
+        if not (experience.straight or experience.tolerance):
+            continue
+        every = [Assignment(experience, at) for at in assignments(experience)]
+        if len(every) > 400:
+            continue
+        yield from given_up_of(experience, every)
+        number += 1
+        if number == 60:
+            return
+
+
+def given_up_of(experience: Experience, every: list[Assignment]) -> Iterator[Query]:
+    """All dstates of which no view is wrong, with what they break; those that break nothing else;
+    and those that break nothing."""
+    names = [*reasons(experience)]
+    views = [name for name in names if name.startswith("view")]
+    of_paths = ("twice", "crossed", "circular")
+    safe = [name for name in names if name not in views and not name.startswith(of_paths)]
+    sound, other, defined = set(), set(), True
+    for one in every:
+        wrong = {f"waived({name})" for name in names if one.broken(name)}
+        of_views = {name for name in wrong if name.startswith("waived(view")}
+        if not of_views:
+            sound.add(((), ats(one.at) | wrong))
+        odd = any(
+            one.at[t][0] == one.at[u][0] and one.pairs(t) != one.pairs(u)
+            for t, u in combinations(range(len(one.at)), 2)
+        )
+        if odd and not any(one.broken(name) for name in safe):
+            defined = False
+        if wrong == of_views:
+            other.add(((), ats(one.at) | wrong))
+    files, how = ("topomap", "explain"), (*experience.constants(), "--opt-mode=ignore")
+    facts = experience.facts()
+    yield Query(files, f"{facts} :- waived(view(_,_)).", frozenset(sound), how)
+    if defined:
+        seen = "is_view(view(T,U)) :- waived(view(T,U)). :- waived(R), not is_view(R)."
+        yield Query(files, f"{facts} {seen}", frozenset(other), how)
+    right = frozenset(((), ats(at)) for at in Truth(experience).final)
+    for parts, found in (((), right), (("planar",), None), (("boundary",), None)):
+        if found is None:
+            found = frozenset(((), ats(at)) for at in Truth(experience).having(*parts))
+        yield Query((*files, *parts), f"{facts} :- waived(_).", found, how)
+    free = frozenset(((), ats(at)) for at in Truth(experience, axiom=False).final)
+    yield Query((*files, "no_path_axiom"), f"{facts} :- waived(_).", free, how)
+
+
 def waived(experience: Experience, parts: tuple[str, ...]) -> Iterator[Query]:
     """All dstates by step, with what they break; and those that break least."""
     pending = product(range(experience.steps + 1), range(experience.slots))
@@ -713,16 +992,28 @@ def check() -> Iterator[Query]:
     where both checkers say the same."""
     alone = ("boundary", "perpendicular", "travelled")
     for experience, at in [*by_hand(), *drawn(120), *contradicting(80), *coming_back(80)]:
-        for demands in (DEMANDS, (), (*alone, NO_PATH_AXIOM)):
-            violations = by_definition(experience, at, demands)
-            broken = STEP_RULES & dict(violations).keys()
-            if broken and by_rules(experience, at, demands) != violations:
-                continue
-            facts = [f"at({step},{place},{slot})." for step, place, slot in at]
-            facts += [f"demand({demand})." for demand in demands]
-            found = shown(*(f"violation({rule},{step})" for rule, step in violations))
-            told = experience.facts() + "".join(facts)
-            yield Query(("check",), told, found, tuple(experience.constants()))
+        yield from judged(experience, at, DEMANDS, (), (*alone, NO_PATH_AXIOM))
+
+
+def check_bent() -> Iterator[Query]:
+    """The same where pairs of gateways are told, or bearings are not exact."""
+    alone = ("boundary", NO_PATH_AXIOM)
+    for experience, at in bent_maps(160):
+        yield from judged(experience, at, DEMANDS, (*DEMANDS, NO_PATH_AXIOM), alone, ())
+
+
+def judged(experience: Experience, at: list, *every: tuple[str, ...]) -> Iterator[Query]:
+    """What is wrong with a map where this is demanded."""
+    for demands in every:
+        violations = by_definition(experience, at, demands)
+        broken = STEP_RULES & dict(violations).keys()
+        if broken and by_rules(experience, at, demands) != violations:
+            continue
+        facts = [f"at({step},{place},{slot})." for step, place, slot in at]
+        facts += [f"demand({demand})." for demand in demands]
+        found = shown(*(f"violation({rule},{step})" for rule, step in violations))
+        told = experience.facts() + "".join(facts)
+        yield Query(("check",), told, found, tuple(experience.constants()))
 
 
 def demands() -> Iterator[Query]:
@@ -747,6 +1038,14 @@ def faults() -> Iterator[Query]:
     """Instances with faults."""
     for facts, errors in INSTANCES.items():
         yield Query(("input",), facts, shown(*(f"error({error})" for error in errors.split())))
+    for tolerance, errors in (
+        (-2, ["error(-1,negative_tolerance(-2))"]),
+        (-1, ["error(-1,negative_tolerance(-1))"]),
+        (0, []),
+        (3, []),
+    ):
+        how = ("-c", f"tolerance={tolerance}")
+        yield Query(("input",), "slots(4). view(0,0).", shown(*errors), how)
 
 
 COMPARED = {"number": int.__eq__, "least": int.__ge__, "most": int.__le__}
@@ -858,6 +1157,24 @@ def further() -> Iterator[Query]:
         yield proved(bare(among), among, False, None)
 
 
+def further_bent() -> Iterator[Query]:
+    """The same of maps in which pairs of gateways are told, and where a compass is, too."""
+    for seed in range(70):
+        draw = random.Random(f"further bent {seed}")
+        if seed % 3:
+            _, among = walks.scattered(draw, 3)
+            among = [numbered(draw, one, False) for one in walks.bent(draw, among)]
+            facts = bare(among)
+        else:
+            experience, found = walks.drawn_bent(draw, 3, 6)
+            facts = experience.facts()
+            for number, at in enumerate(found):
+                facts += "".join(f"map({number},{t},{p},{s}). " for t, (p, s) in enumerate(at))
+            among = [walks.standing(experience, at) for at in found]
+        yield from planned(facts, among, draw.choice([1, 2]), False, 1)
+        yield proved(facts, among, False, None)
+
+
 # Two markers would tell these three by three steps, and one does not.
 TWO_MARKERS = (
     {(0, 1): (0, 2), (0, 3): (0, 0)},
@@ -910,7 +1227,10 @@ def numbered(draw: random.Random, one: Standing, out: bool) -> Standing:
     stars = {number[place]: star for place, star in one.world.stars.items()}
     links = {(number[p], s): (number[q], x) for (p, s), (q, x) in one.world.links.items()}
     signs = {number[place]: terms for place, terms in one.world.landmarks.items()}
-    world = replace(one.world, stars=stars, links=links, landmarks=signs)
+    across = one.world.across
+    if across is not None:
+        across = {(number[p], s): (number[q], x) for (p, s), (q, x) in across.items()}
+    world = replace(one.world, stars=stars, links=links, landmarks=signs, across=across)
     dstate = number[one.dstate[0]], one.dstate[1]
     elsewhere = [place for place in stars if place != dstate[0]]
     north = {number[place]: slot for place, slot in one.compass.items()}
@@ -928,6 +1248,8 @@ def bare(among: list[Standing]) -> str:
         for place, terms in one.world.landmarks.items():
             facts += "".join(f"map_sign({number},{place},{term}). " for term in terms)
         facts += "".join(f"map_compass({number},{p},{s}). " for p, s in one.compass.items())
+        for (place, slot), (_, other) in (one.world.across or {}).items():
+            facts += f"map_pair({number},{place},{slot},{other}). "
         facts += "map_stands({},{},{}). ".format(number, *one.dstate)
         facts += f"map_marker({number},{one.marker}). " if one.marker is not None else ""
     return facts
@@ -1003,50 +1325,73 @@ def following() -> Iterator[Query]:
     draws += [informed(random.Random(f"following known {seed}"), 6) for seed in range(20)]
     draws += [logs(random.Random(f"following logs {seed}"), 5) for seed in range(20)]
     for number, experience in enumerate([*(EXPERIENCES | WORLDS).values(), *draws]):
-        truth = Truth(experience)
-        head, *lines = experience.facts().splitlines()
-        head = f"online. {head}"
-        names, steps = list(range(len(lines))), tuple(lines)
-        if number % 2:
-            names, steps = astray(random.Random(f"astray {number}"), experience)
+        yield from followed(number, experience)
 
-        def atoms(at, names=names):
-            return frozenset(f"at({names[t]},{names[p]},{s})" for t, (p, s) in enumerate(at))
 
-        all_ = ("--project", *experience.constants())
+def following_bent() -> Iterator[Query]:
+    """The same of experiences where pairs of gateways are told, and without the path axiom."""
+    draws = [bent(random.Random(f"following bent {seed}"), 7) for seed in range(90)]
+    draws = [one for one in draws if one.straight and not one.tolerance]
+    draws += [one for one in BENT.values() if one.straight]
+    for number, experience in enumerate(draws):
+        yield from followed(number, experience)
+        yield from followed(number + 1, experience, "no_path_axiom")
+    for seed in range(40):
+        experience = random_experience(random.Random(f"following, no axiom {seed}"), 6)
+        yield from followed(seed, experience, "no_path_axiom")
 
-        def asked(found, *more, parts=(), arguments=(), facts=head, steps=steps, all_=all_):
-            how = (*all_, *arguments)
-            return Query(("online", *more), facts, frozenset(found), how, steps, ("step", *parts))
 
-        every, ignore = truth.final, ("--opt-mode=ignore",)
-        yield asked([((), atoms(at)) for at in every], arguments=ignore)
-        bound, parts = ((None, ("planar",)), (3, ("bound",)), (4, ("bound", "planar")))[number % 3]
-        if experience.starts:  # of several logs it is not followed what is planar
-            bound, parts = 4, ("bound",)
-        found = [
-            ((), atoms(at))
-            for at in truth.having(*parts[-1:] * (parts[-1] == "planar"), bound=bound)
-        ]
-        few = () if bound is None else ("-c", f"places={bound}")
-        yield asked(found, parts=parts, arguments=(*ignore, *few))
-        costs = {at: h.cost() for at, h in every.items()}
-        if number % 3 == 0:
-            fewest = truth.least(lambda h: h.cost(), every)
-            found = [(costs[at], atoms(at)) for at in fewest]
-            yield asked(found, arguments=("--opt-mode=optN",))
-        elif number % 3 == 1:
-            fewest = truth.least(lambda h: h.cost(), truth.having("closed"))
-            found = [(costs[at], atoms(at)) for at in fewest]
-            ends = (*steps, f":- not closed({names[-1]}).")
-            yield asked(found, arguments=("--opt-mode=optN",), steps=ends)
-        else:
-            told = [atoms(at) | together(experience.slots, at, names) for at in every]
-            yield asked([((), one) for one in told], "online/certain", arguments=ignore)
-            for mode, join in ("cautious", frozenset.intersection), ("brave", frozenset.union):
-                found = [((), join(*told))] if told else []
-                how = (*ignore, f"--enum-mode={mode}")
-                yield asked(found, "online/certain", arguments=how)
+def followed(number: int, experience: Experience, *loaded: str) -> Iterator[Query]:
+    """Some of that, by the number."""
+    truth = Truth(experience, axiom=not loaded)
+    head, *lines = experience.facts().splitlines()
+    head = f"online. {'straight_told. ' * bool(experience.straight)}{head}"
+    head += " step(0)." * bool(loaded)
+    names, steps = list(range(len(lines))), tuple(lines)
+    if number % 2:
+        names, steps = astray(random.Random(f"astray {number}"), experience)
+
+    def atoms(at, names=names):
+        return frozenset(f"at({names[t]},{names[p]},{s})" for t, (p, s) in enumerate(at))
+
+    all_ = ("--project", *experience.constants())
+
+    def asked(found, *more, parts=(), arguments=(), facts=head, steps=steps, all_=all_):
+        how = (*all_, *arguments)
+        files = ("online", *more, *loaded)
+        return Query(files, facts, frozenset(found), how, steps, ("step", *parts))
+
+    every, ignore = truth.final, ("--opt-mode=ignore",)
+    yield asked([((), atoms(at)) for at in every], arguments=ignore)
+    bound, parts = ((None, ("planar",)), (3, ("bound",)), (4, ("bound", "planar")))[number % 3]
+    if experience.starts:  # of several logs it is not followed what is planar
+        bound, parts = 4, ("bound",)
+    found = [
+        ((), atoms(at)) for at in truth.having(*parts[-1:] * (parts[-1] == "planar"), bound=bound)
+    ]
+    few = () if bound is None else ("-c", f"places={bound}")
+    yield asked(found, parts=parts, arguments=(*ignore, *few))
+    costs = {at: h.cost() for at, h in every.items()}
+    if loaded and number % 3 < 2:  # what a map costs is not told without the path axiom
+        closed = [((), atoms(at)) for at in truth.having("closed")]
+        ends = (*steps, f":- not closed({names[-1]}).")
+        yield asked(closed, arguments=ignore, steps=ends)
+    elif number % 3 == 0:
+        fewest = truth.least(lambda h: h.cost(), every)
+        found = [(costs[at], atoms(at)) for at in fewest]
+        yield asked(found, arguments=("--opt-mode=optN",))
+    elif number % 3 == 1:
+        fewest = truth.least(lambda h: h.cost(), truth.having("closed"))
+        found = [(costs[at], atoms(at)) for at in fewest]
+        ends = (*steps, f":- not closed({names[-1]}).")
+        yield asked(found, arguments=("--opt-mode=optN",), steps=ends)
+    else:
+        told = [atoms(at) | together(experience.slots, at, names) for at in every]
+        yield asked([((), one) for one in told], "online/certain", arguments=ignore)
+        for mode, join in ("cautious", frozenset.intersection), ("brave", frozenset.union):
+            found = [((), join(*told))] if told else []
+            how = (*ignore, f"--enum-mode={mode}")
+            yield asked(found, "online/certain", arguments=how)
 
 
 def astray(draw, experience):
@@ -1107,11 +1452,27 @@ def alone() -> Iterator[Query]:
     entries = ("phases/topomap", "phases/visits", "phases/runs", "phases/lines", "online")
     for file, text in sorted(texts.items()):
         if GUARD.search(text) and file not in entries:
-            yield Query((file,), defined, frozenset(), ("-c", "places=3"))
+            told = ("-c", "places=3", "-c", "tolerance=0")
+            yield Query((file,), defined, frozenset(), told)
     yield Query(("paper/bound",), defined, frozenset(), ("-c", "places=3"))
     # That no number is there has a message, and so is said by one that is too small.
-    marker = f"{EXPERIENCES['marker'].facts()} #const with_marker = 0."
-    yield Query(("paper/topomap",), marker, frozenset())
+    for file, told in (
+        ("marker", EXPERIENCES["marker"]),
+        ("lengths", KNOWN["length"]),
+        ("straight", BENT["all opposite"]),
+        ("tolerance", BENT["one slot off"]),
+    ):
+        facts, how = f"{told.facts()} #const with_{file} = 0.", tuple(told.constants())
+        yield Query(("paper/topomap",), facts, frozenset(), how)
+    sides = f"{BENT['all opposite'].facts()} #const with_sides = 0."
+    for part in ("paper/boundary", "paper/beyond/exceptions"):
+        yield Query(("paper/topomap", "paper/beyond/straight", part), sides, frozenset())
+    # A file of what is not told changes nothing.
+    for name in ("ahead", "lasso"):
+        found = frozenset(((), ats(at)) for at in Truth(EXPERIENCES[name]).final)
+        for file in ("straight", "tolerance", "compass"):
+            files = ("paper/topomap", f"paper/beyond/{file}")
+            yield Query(files, EXPERIENCES[name].facts(), found)
     # It has a map, and that one is closed.
     back = seen("0", "0: 0", "0: 0")
     pairs = "".join(f"{atom}. " for atom in phase_answers.Pairs(back).shown())
@@ -1125,6 +1486,11 @@ SUITES = (
     marker,
     knowledge,
     given_up,
+    bearings,
+    off_or_bent,
+    check_bent,
+    further_bent,
+    following_bent,
     misread,
     circumscription,
     phases,

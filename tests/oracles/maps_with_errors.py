@@ -10,7 +10,7 @@ from topomap.model.facts import parse
 from topomap.model.query import Query
 from topomap.search import traversal
 
-from oracles.worlds import informed, logs, random_experience
+from oracles.worlds import bent, informed, logs, random_experience
 
 At = list[tuple[int, int, int]]
 DEMANDS = ("planar", "bound(3)", "closed", "travelled", "boundary", "perpendicular")
@@ -164,7 +164,35 @@ def coming_back(number: int) -> Iterator[tuple[Experience, At]]:
             yield experience, [(step, *dstate) for step, dstate in enumerate(at)]
 
 
+def bent_maps(number: int) -> Iterator[tuple[Experience, At]]:
+    """Maps, with errors or without, where pairs of gateways are told, or bearings are not exact: of
+    the very experience, and of one of which less is told, or less exactly; some with paths that
+    come back."""
+    # Two circular paths through one place, neither with the other on both of its sides.
+    rings = Experience(
+        4, [[*range(4)]] * 3, [1, 2], straight=[[(0, 1), (2, 3)]] * 2 + [[(1, 2), (0, 3)]]
+    )
+    yield rings, [(0, 0, 0), (1, 0, 0), (2, 0, 3)]
+    for seed in range(number):
+        draw = random.Random(f"bent maps {seed}")
+        experience = bent(draw, draw.choice([3, 5, 6, 8]))
+        less = replace(experience, compass=())
+        if seed % 2:
+            less = replace(less, straight=draw.choice([(), less.straight]))
+        if seed % 2 and less.tolerance:
+            less = replace(less, tolerance=less.tolerance + 1)
+        node = traversal.root(less, Query(frozenset(["no_path_axiom"] if seed % 3 else [])))
+        ends = (one for one in traversal.depth_first(node) if one.steps == less.steps)
+        found = [one.dstates for one in islice(ends, 200)]
+        for at in draw.sample(found, min(2, len(found))):
+            told = [(step, *dstate) for step, dstate in enumerate(at)]
+            yield experience, told
+            if draw.random() < 0.3:
+                yield experience, with_errors(draw, experience, told)
+
+
 # Facts, and the errors that input.lp shows.
+THREE = "slots(4). view(0,0). view(0,1). view(0,2)."
 ONE = "slots(4). view(0,0). turn(1,0). view(1,0)."
 INSTANCES = {
     "slots(4). view(0,0).": "",
@@ -244,6 +272,24 @@ INSTANCES = {
     f"{ONE} look(2). view(2,0). start(3). view(3,0).": "",
     f"{ONE} look(2).": "2,no_view",
     f"{ONE} start(3). view(3,0).": "2,no_turn",
+    f"{ONE} straight(0,0,0). straight(1,0,0).": "",
+    f"{ONE} straight(0,0,1). straight(1,3,0).": "0,no_pair(1) 1,no_pair(3)",
+    f"{ONE} straight(1,1,1).": "1,no_pair(1)",
+    f"{ONE} straight(1,0,4). straight(0,-1,0).": "1,straight_slot(4) 0,straight_slot(-1)",
+    f"{ONE} straight(1,a,0).": "1,straight_slot(a)",
+    f"{ONE} straight(1,0,a).": "1,straight_slot(a)",
+    f"{ONE} straight(1,0,#inf).": "1,straight_slot(#inf)",
+    f"{ONE} straight(a,0,0).": "-1,no_step(a)",
+    f"{ONE} straight(-1,0,0).": "-1,no_step(-1)",
+    f"{ONE} straight(a,8,9).": "-1,no_step(a)",
+    "view(0,0). straight(0,a,0).": "-1,no_slots 0,straight_slot(a)",
+    f"{ONE} straight(2,0,0).": "2,no_step",
+    f"{THREE} straight(0,0,1). straight(0,1,0).": "",
+    f"{THREE} straight(0,0,1). straight(0,2,1).": "0,two_pairs(1)",
+    f"{THREE} straight(0,0,1). straight(0,1,1).": "0,two_pairs(1)",
+    f"{THREE} straight(0,1,2). straight(0,2,2).": "0,two_pairs(2)",
+    "slots(4). view(0,0). view(0,3). straight(0,3,0).": "",
+    "view(0,0). straight(0,2147483647,0).": "-1,no_slots 0,no_pair(2147483647)",
     f"{ONE} start(0).": "0,starts_already",
     f"{ONE} look(0).": "0,no_earlier_look",
     f"{ONE} start(1).": "1,travels",

@@ -181,7 +181,7 @@ def changes(node: ast.AST, body: bool = False) -> Iterator[tuple[str, str, ast.A
 def named(key: str, old: ast.AST, new: ast.AST) -> str:
     """The text of a change, once it is one of a literal, a head, or a part of one that has
     no other name; until then none."""
-    if key in ("weight", "priority"):
+    if key in ("weight", "priority", "value"):
         return f"{key} {old} -> {new}"
     if old.ast_type == ast.ASTType.Literal or key in ("head", "left_guard", "right_guard"):
         return f"{str(old).strip()} -> {str(new).strip()}"

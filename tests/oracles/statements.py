@@ -51,7 +51,8 @@ def ends(draw, experience):
     """Gateways, each as a step and a slot: the two ends of what a step took, or other ones."""
     last = experience.steps
     step = max(draw.randint(0, last), draw.randint(0, last))
-    taken = [(step - 1, experience.turns[step - 1]), (step, 0)] if step else []
+    travels = step and experience.turns[step - 1] is not None
+    taken = [(step - 1, experience.turns[step - 1]), (step, 0)] if travels else []
     if draw.random() < 0.1:
         slot = draw.choice(sorted(experience.views[step]))
         taken = [(step, slot), (step, (slot + experience.slots // 2) % experience.slots)]

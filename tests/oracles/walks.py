@@ -7,11 +7,15 @@ from itertools import combinations, product
 from conftest import Truth
 from topomap.questions.standings import Standing
 
+from oracles.worlds import bent as bent_walk
 from oracles.worlds import random_experience, random_world
 
 
 def standing(experience, at, marker=None):
-    return Standing(experience.map_of(at), at[-1], marker)
+    north = {}
+    if experience.compass and None not in experience.compass:
+        north = {place: experience.compass[place] for place, _ in at}
+    return Standing(experience.map_of(at), at[-1], marker, north)
 
 
 def drawn(draw, most=4, steps=8):
@@ -21,6 +25,55 @@ def drawn(draw, most=4, steps=8):
         if experience.steps:
             found = sorted(Truth(experience).final)
             return experience, draw.sample(found, min(len(found), draw.randint(1, most)))
+
+
+def drawn_bent(draw, most, steps):
+    """Some hypotheses, with or without the path axiom, of an experience with exact bearings where
+    pairs of gateways are told, and matter; or a compass is."""
+    while True:
+        experience = bent_walk(draw, steps)
+        if experience.tolerance or not (experience.straight or experience.compass):
+            continue
+        found = sorted(Truth(experience, axiom=False).final)
+        found = draw.sample(found, min(len(found), most))
+        among = [standing(experience, at) for at in found]
+        bare = [replace(one, world=replace(one.world, across=None), compass={}) for one in among]
+        if any(
+            related(among[i], among[j], False) != related(bare[i], bare[j], False)
+            for i, j in combinations(range(len(among)), 2)
+        ):
+            return experience, found
+
+
+def bent(draw, among):
+    """The same maps, where pairs of gateways are told: at each place the same ones in all of them,
+    but now and then."""
+    pairs = {}
+
+    def drawn_pairs(place, star):
+        star = draw.sample(sorted(star), len(star))
+        half = len(star) // 2
+        both = [*zip(star[:half], star[half : 2 * half], strict=True)]
+        return {
+            (place, one): (place, other)
+            for pair in draw.sample(both, draw.randint(0, half))
+            for one, other in (pair, pair[::-1])
+        }
+
+    found = []
+    for one in among:
+        across = {}
+        for place, star in sorted(one.world.stars.items()):
+            again = place not in pairs or draw.random() < 0.2
+            mine = drawn_pairs(place, star) if again else pairs[place]
+            across |= pairs.setdefault(place, mine) if draw.random() < 0.8 else mine
+        found.append(replace(one, world=replace(one.world, across=across)))
+    # What is seen now is the same in all of them.
+    return [one for one in found if sight(one, (one.dstate, None)) == first_sight(found)]
+
+
+def first_sight(among):
+    return sight(among[0], (among[0].dstate, None))
 
 
 def scattered(draw, most=4, rate=0.9):
@@ -74,7 +127,13 @@ def sight(one, here):
     world = one.world
     star = tuple(sorted((s - slot) % world.slots for s in world.stars[place]))
     north = (slot + one.compass[place]) % world.slots if place in one.compass else None
-    return star, tuple(sorted(world.landmarks.get(place, ()))), lies == place, north
+    pairs = {
+        ((s - slot) % world.slots, (r - slot) % world.slots)
+        for (at, s), (_, r) in (world.across or {}).items()
+        if at == place
+    }
+    signs = tuple(sorted(world.landmarks.get(place, ())))
+    return star, signs, lies == place, north, tuple(sorted(pairs))
 
 
 def gone(one, here, turn):

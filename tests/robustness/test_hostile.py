@@ -212,7 +212,7 @@ def test_other_hostile_networks(tmp_path):
         ('{"maps": [{"at": [[0, 0, 0]]}]}', "0 steps, the instance has 16"),
         (
             f'{{"maps": [{{"at": {[[t, 0, 0] for t in range(17)]}}}]}}',
-            "step 1: it breaks the rule schema",
+            "step 1: it breaks the rule itself",
         ),
         (f'{{"maps": [{{"at": {[[t, 10**30, 0] for t in range(17)]}}}]}}', "map 1: at is not"),
         (f'{{"maps": [{{"at": {[[t, 99, 0] for t in range(17)]}}}]}}', "step 0: it breaks"),

@@ -89,8 +89,9 @@ def test_the_path_axiom_can_be_taken_away():
         ("closed", "perpendicular", "planar"): 1,
     }.items():
         assert len(maps(snake, "topomap", "no_path_axiom", *parts)) == many
-        stated = (f"paper/{part}" for part in parts)
-        assert len(maps(snake, "paper/topomap", "no_path_axiom", *stated)) == many
+        if "perpendicular" not in parts:  # it rests on the axiom in the statement
+            stated = (f"paper/{part}" for part in parts)
+            assert len(maps(snake, "paper/topomap", "no_path_axiom", *stated)) == many
     loop = (CASES / "loop.lp").read_text()
     for form in ("", "paper/"):
         assert len(maps(loop, f"{form}topomap")) == 1

@@ -18,6 +18,7 @@ MORE = {  # of which the paper does not know
     "odometry": ["shift(3,1,0)."],
     "lengths": ["length(3,7)."],
     "closures": ["same(0,16).", "apart(0,8)."],
+    "straight": ["straight(0,0,0)."],
     "logs": ["look(17). view(17,0). view(17,3).", "start(17). view(17,0). view(17,2)."],
 }
 FACTS = read(ROOT / "instances/grid-3x3-snake.lp").facts()
@@ -29,7 +30,7 @@ OF_ENTRY = {
     ],
     "paper/topomap": [
         *(f"paper/{part}" for part in ("bound", *STATED)),
-        *(*BEYOND, "paper/beyond/exceptions", "no_path_axiom"),
+        *(*BEYOND, "paper/beyond/exceptions", "paper/beyond/tolerance", "no_path_axiom"),
     ],
 }
 # They are loaded by programs, which add a fact that says so, and not by plain clingo.

@@ -11,7 +11,7 @@ from topomap.model.experience import Experience
 from topomap.model.found import Found
 from topomap.model.query import Query
 from topomap.model.reply import Reply
-from topomap.model.vocabulary import PRUNING
+from topomap.model.vocabulary import CHOSEN
 from topomap.questions import proofs
 from topomap.questions.candidates import PARTS_OF, At, Candidates, gather
 from topomap.questions.explore import Untold, plan
@@ -108,7 +108,7 @@ def candidates(
 ) -> Candidates:
     """The maps that may be the real one. Parameters and errors are those of ``explore``; the
     maps are in ``each``, and ``facts()`` gives them to ``encodings/explore.lp``."""
-    query = query_of(parts, bound=bound, horizon=horizon, allowed=PRUNING)
+    query = query_of(parts, bound=bound, horizon=horizon, allowed=CHOSEN)
     asked = _asked(among)
     return candidates_under(begin(experience, timeout), experience, asked, query)
 
@@ -178,7 +178,7 @@ def explore(
             of this experience.
     """
     steps, marker = whole("steps", steps, 1, MOST_WALKED), flag("marker", marker)
-    query = query_of(parts, bound=bound, horizon=horizon, allowed=PRUNING)
+    query = query_of(parts, bound=bound, horizon=horizon, allowed=CHOSEN)
     asked = [] if isinstance(among, Candidates) else _asked(among)
     watch = begin(experience, timeout)
     if isinstance(among, Candidates):

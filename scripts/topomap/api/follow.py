@@ -170,8 +170,8 @@ class Follower:
             shift: how far this step moved the agent, as (x, y), in whole numbers of any unit.
             length: how long this step was, in whole units.
             same, apart: earlier steps after which the agent was at this place, or at another one.
-            straight: the pairs of slots of the view whose gateways are on one path; None if pairs
-                are not told, as they must be from the first view on, or not at all.
+            straight: the pairs of slots of the view whose gateways are on one path. The
+                first view tells them, or no view does; None of a later view: there are none.
             start: whether a new log of the same world begins here; then there is no turn.
             look: whether it is no travel but a second look; then there is no turn.
             watch: that of a command; then the time limit is not used.

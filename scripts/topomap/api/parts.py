@@ -9,7 +9,7 @@ from typing import Any, TypedDict
 from topomap.model.experience import Experience
 from topomap.model.facts import parse
 from topomap.model.query import Query
-from topomap.model.vocabulary import BEYOND, FORMS, PARTS, STATED
+from topomap.model.vocabulary import FORMS, PARTS, unstated
 from topomap.questions.statements import parse_statement, statement_text
 from topomap.runtime.checks import flag, percent, seconds, shown, whole_if_given
 from topomap.runtime.watch import Watch
@@ -62,7 +62,7 @@ def query_of(
     asked = frozenset(asked_of(parts, allowed))
     if encoding not in FORMS:
         raise ValueError(f"encoding={encoding!r}: it is {' or '.join(FORMS)}")
-    if encoding == "paper" and (others := sorted(asked - STATED - BEYOND.keys())):
+    if encoding == "paper" and (others := unstated(asked)):
         raise ValueError(f"encoding='paper' does not state {', '.join(others)}")
     if encoding == "paper" and noise is not None:
         raise ValueError("encoding='paper' does not go with noise")

@@ -10,7 +10,7 @@ from topomap.api.parts import Parts, query_of, senses_of, world_of
 from topomap.model.experience import Experience
 from topomap.model.query import Query
 from topomap.model.reply import Reply
-from topomap.model.vocabulary import PRUNING, RELAXING
+from topomap.model.vocabulary import CHOSEN
 from topomap.questions.robot import Outcome, start_of
 from topomap.questions.robot import simulate as explored
 from topomap.runtime.checks import flag, seconds, share, whole, whole_if_given
@@ -138,7 +138,7 @@ def simulate(
         InputError: a world that is too large (more than 100,000 places); no such place or
             gateway.
     """
-    query = query_of(parts, bound=bound, allowed=(*PRUNING, *RELAXING))
+    query = query_of(parts, bound=bound, allowed=CHOSEN)
     thin, signs, seed = share("thin", thin), share("signs", signs), whole("seed", seed, 0)
     steps, facing = (
         whole_if_given("steps", steps, 0, MOST_STEPS),

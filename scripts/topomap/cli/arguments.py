@@ -8,7 +8,7 @@ from collections.abc import Iterable
 from typing import Any, NoReturn
 
 from topomap.cli.subcommands import SUBCOMMANDS
-from topomap.model.vocabulary import FORMS, PARTS, PRUNING
+from topomap.model.vocabulary import CHOSEN, FORMS, PARTS
 from topomap.runtime.errors import InputError
 from topomap.runtime.limits import DRIFT, LARGEST, STRETCH
 
@@ -191,7 +191,8 @@ def add_tolerance(command: Parser) -> None:
         "--tolerance",
         type=number(int, 0),
         metavar="N",
-        help="bearings may be wrong by N slots; a place keeps those first seen (default: 0)",
+        help="bearings may be wrong by N slots; a place keeps those that were seen first "
+        "(default: 0)",
     )
 
 
@@ -294,5 +295,5 @@ def add_scene(command: Parser) -> None:
     add("--map", type=number(int, 1), metavar="N", help="take the N-th map (default: 1)")
     add_known(command)
     add_asked(
-        command, PRUNING, limit="stop the search for maps after S seconds, and take what was found"
+        command, CHOSEN, limit="stop the search for maps after S seconds, and take what was found"
     )

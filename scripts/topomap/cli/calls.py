@@ -4,7 +4,7 @@ import argparse
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
-from topomap.model.vocabulary import BEYOND, OPTIMIZING, PARTS, STATED
+from topomap.model.vocabulary import OPTIMIZING, PARTS, unstated
 from topomap.runtime.errors import InputError, say
 
 if TYPE_CHECKING:
@@ -70,9 +70,9 @@ def known(args: argparse.Namespace, experience: "Experience") -> "Experience":
 def parts_of(args: argparse.Namespace, of: Iterable[str] = PARTS) -> dict[str, bool]:
     """The parts that are asked for. Raises InputError if the encoding does not state one."""
     parts = {part: True for part in of if getattr(args, part, False)}
-    others = [f"--{part}" for part in parts if part not in {*STATED, *BEYOND}]
-    if getattr(args, "encoding", None) == "paper" and others:
-        raise InputError(f"topomap {args.command}: --encoding paper does not state {others[0]}")
+    if getattr(args, "encoding", None) == "paper" and (others := unstated(parts.keys())):
+        name = f"--{others[0].replace('_', '-')}"
+        raise InputError(f"topomap {args.command}: --encoding paper does not state {name}")
     return parts
 
 

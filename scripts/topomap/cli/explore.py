@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 from topomap.cli.arguments import add_known, add_query, command, number
 from topomap.cli.calls import asked_query, experience_of
 from topomap.cli.tell import tell
-from topomap.model.vocabulary import PRUNING
+from topomap.model.vocabulary import CHOSEN
 from topomap.runtime import formats
 from topomap.runtime.errors import InputError, say
 from topomap.runtime.files import output
@@ -63,7 +63,7 @@ def add(group: Any) -> None:
     what.add_argument(
         "--facts", action="store_true", help="print the maps as facts for encodings/explore.lp"
     )
-    add_query(made, PRUNING)
+    add_query(made, CHOSEN)
     add_known(made)
 
 
@@ -79,7 +79,7 @@ def run(args: argparse.Namespace) -> int:
         return _check(args, experience)
     with output(args.output) as out, heeding(args.timeout) as watch:
         asked = args.among or ["optimal"]
-        among = candidates_under(watch, experience, asked, asked_query(args, PRUNING))
+        among = candidates_under(watch, experience, asked, asked_query(args, CHOSEN))
         if args.facts and among.each:
             out.write(among.facts(args.marker))
             return exit_status(among.fault, True)

@@ -5,7 +5,7 @@ from typing import Any
 
 from topomap.cli.arguments import add_asked, add_known, command, number
 from topomap.cli.calls import asked_query, experience_of, known_options
-from topomap.model.vocabulary import PRUNING
+from topomap.model.vocabulary import CHOSEN
 from topomap.runtime.errors import InputError, say
 from topomap.runtime.status import exit_status
 
@@ -35,7 +35,7 @@ def add(group: Any) -> None:
         "--json (- is standard input)",
     )
     add("-o", "--output", metavar="FILE", help="file to write (default: stdout)")
-    add_asked(made, PRUNING)
+    add_asked(made, CHOSEN)
     add_known(made)
     made.set_defaults(timeout=60.0)
 
@@ -54,7 +54,7 @@ def run(args: argparse.Namespace) -> int:
         raise InputError("topomap report: an instance is named twice")
     if args.maps_from is not None and len(seen) > 1:
         raise InputError("topomap report: --maps-from goes with one instance")
-    query = asked_query(args, PRUNING)
+    query = asked_query(args, CHOSEN)
     with output(args.output) as out, heeding(args.timeout) as watch:
         told = known_options(args)
         made = report_under(watch, seen, query, args.maps, args.timeout, args.maps_from, told)

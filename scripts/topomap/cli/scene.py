@@ -5,7 +5,7 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from topomap.cli.calls import asked_query, parsed
-from topomap.model.vocabulary import PRUNING
+from topomap.model.vocabulary import CHOSEN
 from topomap.runtime.errors import InputError, say
 from topomap.runtime.status import exit_status
 
@@ -21,7 +21,7 @@ def scene_of(args: argparse.Namespace) -> "tuple[Scene | None, int]":
     from topomap.runtime.watch import heeding
 
     need("draw", f"topomap {args.command}")
-    query = asked_query(args, PRUNING)
+    query = asked_query(args, CHOSEN)
     with heeding(args.timeout) as watch:
         read = partial(parsed, args)
         found, fault, searched = scenes_under(watch, args.file, query, args.given, read)

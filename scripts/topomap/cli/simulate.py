@@ -18,7 +18,7 @@ from topomap.cli.arguments import (
 )
 from topomap.cli.calls import asked_query, environment_of, senses_of
 from topomap.cli.tell import tell
-from topomap.model.vocabulary import PRUNING, RELAXING
+from topomap.model.vocabulary import CHOSEN
 from topomap.runtime import formats
 from topomap.runtime.errors import InputError
 from topomap.runtime.files import output
@@ -29,8 +29,6 @@ if TYPE_CHECKING:
     from topomap.api.simulate import Simulation
     from topomap.runtime.watch import Watch
     from topomap.worlds.environment import Environment
-
-ALLOWED = (*PRUNING, *RELAXING)  # what can be asked of a robot's maps
 
 
 def add(group: Any) -> None:
@@ -59,7 +57,7 @@ def add(group: Any) -> None:
     add_measured(common)
     add("--marker", action="store_true", help="the robot carries a marker, and may put it down")
     add("--instance", metavar="FILE", help="also write what the robot did and saw, as an instance")
-    add_asked(common, ALLOWED, horizon=False)
+    add_asked(common, CHOSEN, horizon=False)
     add("--json", action="store_true", help="write JSON")
     add("-o", "--output", metavar="FILE", help="file to write (default: stdout)")
     kinds = add_environments(made, common, "--signs 0.3")
@@ -113,7 +111,7 @@ def _simulated(
 ) -> "Simulation":
     from topomap.api.simulate import simulate_under
 
-    query = asked_query(args, ALLOWED)
+    query = asked_query(args, CHOSEN)
     how = args.start, args.facing, args.steps, args.marker, senses_of(args)
     return simulate_under(watch, environment, query, *how)
 

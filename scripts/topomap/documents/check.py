@@ -262,7 +262,7 @@ class Grown:
         return min(self.ways(path))
 
     def ways(self, path: list[Gateway]) -> list[list[Gateway]]:
-        """The ways to write a path down: it may be taken back, a circular one anywhere."""
+        """The ways to write a path down: from either end, and a circular one from any place."""
         ways = [path, [self.opposite(heading) for heading in reversed(path)]]
         if path and self.links.get(path[-1]) == self.opposite(path[0]):
             ways = [way[n:] + way[:n] for way in ways for n in range(len(way))]

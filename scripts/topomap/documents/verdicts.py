@@ -163,7 +163,7 @@ class Judged(Reply):
         return {
             "demands": self.demands,
             "unsound": [verdict.document() for verdict in self.unsound],
-            "maps": [one.told() for one in self.verdicts if one.exceptions is not None],
+            "judged": [one.told() for one in self.verdicts if one.exceptions is not None],
             "checked": len(self.verdicts),
             "short": self.short,
             "count": self.count,

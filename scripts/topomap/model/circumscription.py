@@ -32,9 +32,12 @@ def extent(experience: Experience, at: Sequence[DState]) -> Extent:
     paths: set[Hashable] = set()
     for path in world.paths():
         steps = [first[heading] for heading in path if heading in first]
-        on = {end for heading in path for end in (heading, world.opposite(heading))}
-        axis = min((place, slot) for place, slot in on if slot in world.stars[place])
-        paths.add(("first", min(steps)) if steps else ("axis", *axis))
+        place, slot = min(path[0], world.opposite(path[0]))
+        if world.across is None:
+            slot %= experience.slots // 2
+        elif slot < 0:  # the path ends at the gateway
+            slot = -1 - slot
+        paths.add(("first", min(steps)) if steps else ("axis", place, slot))
     return Extent(frozenset(paths), frozenset(world.stars))
 
 

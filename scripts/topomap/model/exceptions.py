@@ -18,8 +18,7 @@ Name = int | str  # of a path
 @dataclass(frozen=True)
 class NamedException:
     """An exception: its ``kind`` (``meet twice``, ``place twice`` or ``both sides``), the names of
-    its ``paths``, and the ``places`` (semantics: "What is preferred, also where no map is
-    perfect")."""
+    its ``paths``, and the ``places`` (docs/exceptions.md, "What an exception is")."""
 
     kind: str
     paths: tuple[Name, ...]

@@ -72,9 +72,9 @@ class Experience:
     one that has none: ``("drop", 4, "coin")``.
 
     ``straight[t]`` holds the pairs of gateways, as slots of ``views[t]``, that are on one path
-    (semantics: "Which gateways are on one path"); a gateway that is in none ends its path. If it is
-    empty, opposite gateways are on one path. Bearings may be wrong by ``tolerance`` slots
-    (semantics: "Bearings that are not exact").
+    (semantics: "Which gateways are on one path"); a gateway that is in none ends its path. If
+    ``straight`` is empty, opposite gateways are on one path. Bearings may be wrong by
+    ``tolerance`` slots (semantics: "Bearings that are not exact").
     """
 
     slots: int

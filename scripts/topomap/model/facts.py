@@ -303,23 +303,22 @@ class Facts:
             yield Fault("it is told to be of another place than itself", told_apart, step)
 
     def _pair_faults(self, step: int, slots: int | None, noisy: bool) -> Iterator[Fault]:
+        """What is wrong with the pairs of gateways that are told of a step."""
         view = self.views.get(step, {})
-        others: dict[int, set[int]] = {}
+        told: dict[int, dict[int, tuple[int, str]]] = {}  # of each slot the others, with lines
         for (one, other), line in self.known["straight"].get(step, {}).items():
+            fact = f"straight({step},{one},{other})"
             for slot, end in (one, other), (other, one):
-                known = others.setdefault(slot, set())
-                if slots is not None and not 0 <= slot < slots:
-                    yield Fault(f"slot {slot} is not in 0..{slots - 1}", line, step)
-                elif not noisy and slot not in view:
-                    said = f"straight({step},{one},{other}): no gateway in slot {slot}{HINT}"
-                    yield Fault(said, line, step, lacks=True)
-                elif known - {end}:
-                    yield Fault(f"gateway {slot} is in more than one pair", line, step)
-                else:
-                    known.add(end)
-                    if one != other:
-                        continue
-                break
+                told.setdefault(slot, {}).setdefault(end, (line, fact))
+        for slot, others in sorted(told.items()):
+            line, fact = min(others.values())
+            if slots is not None and not 0 <= slot < slots:
+                yield Fault(f"{fact}: slot {slot} is not in 0..{slots - 1}", line, step)
+            elif slot >= 0 and view and slot not in view and not noisy:
+                yield Fault(f"{fact}: no gateway in slot {slot}{HINT}", line, step, lacks=True)
+            if len(others) > 1:
+                line = sorted(others.values())[1][0]
+                yield Fault(f"gateway {slot} is in more than one pair", line, step)
 
     def _far(self) -> Iterator[Fault]:
         """The first step up to which the shifts are too much."""

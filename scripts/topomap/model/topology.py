@@ -149,7 +149,7 @@ class TopologicalMap:
         return None
 
     def beside(self, path: Sequence[Gateway]) -> tuple[set[Place], set[Place]]:
-        """The places right and left of a path: where those come to who leave it to that side and
+        """The places right and left of a path: where those come who leave it to that side and
         walk straight on (the SSH's boundary regions). A gateway in the very slot of the heading, or
         of what is behind, is on neither side."""
         right: set[Place] = set()

@@ -1,6 +1,8 @@
 """What can be asked of maps: the parts of the theory, and what statements are made of. It loads
 nothing, so that help and a mistyped call need not wait until the solver is loaded."""
 
+from collections.abc import Iterable
+
 PARTS = {
     "planar": "planar: each link joins two gateways of one face",
     "euler": "planar, by Euler's formula: places - links + faces = 2",
@@ -16,6 +18,7 @@ PARTS = {
 OPTIMIZING = {"genus", "exceptions", "minimal"}
 RELAXING = ("no_path_axiom",)  # they take a default away
 PRUNING = ("planar", "perpendicular")  # what has them has had them after each step
+CHOSEN = (*PRUNING, *RELAXING)  # what can be asked of maps that are drawn, explored or reported
 DEMANDS = tuple(part for part in PARTS if part not in (*OPTIMIZING, *RELAXING))
 PROPERTIES = tuple(part for part in DEMANDS if part != "euler")  # which is another rule for planar
 FORMS = ("work", "paper")  # of the encoding: the one that does the work, and the statement
@@ -63,3 +66,11 @@ agent stood after the step:
   circular          some path is circular, which takes --no-path-axiom
   meets_twice       some two paths share two places or more
   not STATEMENT     the statement does not hold"""
+
+
+def unstated(parts: Iterable[str]) -> list[str]:
+    """Those of these parts that ``encodings/paper/`` does not state; it says what is perpendicular
+    with the path axiom only."""
+    asked = {*parts}
+    free = {"perpendicular"} & asked if "no_path_axiom" in asked else set()
+    return sorted(asked - STATED - BEYOND.keys() | free)

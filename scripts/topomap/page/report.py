@@ -23,7 +23,7 @@ from topomap.model.experience import Experience
 from topomap.model.found import Cube
 from topomap.model.query import Query
 from topomap.model.topology import gid
-from topomap.model.vocabulary import PARTS, PRUNING
+from topomap.model.vocabulary import CHOSEN, PARTS
 from topomap.page.chapter import Chapter
 from topomap.page.replay import MOST, SHOWN, fate, in_force
 from topomap.runtime.errors import printable
@@ -54,7 +54,7 @@ class Asked:
     def options(self, without: str = "") -> list[str]:
         """The parts and limits, as options."""
         asked = self.query.parts - {without}
-        flags = [f"--{part}" for part in PRUNING if part in asked]
+        flags = [f"--{part.replace('_', '-')}" for part in CHOSEN if part in asked]
         for name, value in (("bound", self.query.places), ("horizon", self.query.horizon)):
             flags += [] if value is None else [f"--{name}", str(value)]
         return [*flags, *self.known]

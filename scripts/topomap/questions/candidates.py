@@ -11,6 +11,7 @@ from topomap.model import words
 from topomap.model.experience import DState, Experience
 from topomap.model.found import steps_json
 from topomap.model.query import Query
+from topomap.model.vocabulary import RELAXING
 from topomap.questions.standings import Standing, standing
 from topomap.runtime.errors import InputError, printable
 from topomap.runtime.watch import Attempt, Watch
@@ -86,14 +87,16 @@ def gather(
     where bearings are not exact: then it is not told what two maps predict differently."""
     if experience.tolerance:
         raise InputError("topomap explore: what maps predict is exact: no tolerance")
+    relaxed = sorted(query.parts & {*RELAXING})
     found: dict[At, str] = {}
     fault = None
     for number, one in enumerate(among, 1):
         if not isinstance(one, str):
-            at = beginning(f"among: map {number}", steps_json(one), whole, experience)
+            where = f"among: map {number}"
+            at = beginning(where, steps_json(one), whole, experience, relaxed)
             found.setdefault(at, GIVEN)
         elif one not in PARTS_OF:
-            for at in _of_file(one, whole, experience, watch):
+            for at in _of_file(one, whole, experience, watch, relaxed):
                 found.setdefault(at, one)
         elif fault is None:
             watch.title(f"{one} maps")
@@ -123,7 +126,9 @@ def _misspelt(name: str) -> str | None:
     return near[0] if near and not Path(name).exists() else None
 
 
-def _of_file(path: str, whole: Experience, experience: Experience, watch: Watch) -> Iterator[At]:
+def _of_file(
+    path: str, whole: Experience, experience: Experience, watch: Watch, relaxed: Sequence[str]
+) -> Iterator[At]:
     """The maps of a file, cut to the experience. Raises InputError if one is none of its
     hypotheses."""
     if near := _misspelt(path):
@@ -135,4 +140,4 @@ def _of_file(path: str, whole: Experience, experience: Experience, watch: Watch)
         for number, entry in enumerate(document.maps, 1):
             watch.found += 1
             where = f"{document.where}: map {number}"
-            yield beginning(where, entry["at"], whole, experience)
+            yield beginning(where, entry["at"], whole, experience, relaxed)

@@ -6,6 +6,7 @@ from typing import Any
 
 from topomap.documents.answers import map_line
 from topomap.model import words
+from topomap.model.exceptions import exceptions_of
 from topomap.model.experience import Experience, Step
 from topomap.model.found import Found, steps_json
 from topomap.questions.explore import LIMITS, Plan, plan
@@ -50,12 +51,16 @@ class StepAnswer:
             yield f"  certain now: {' '.join(facts[: words.MOST])}{rest}"
         for number, at in enumerate(status.best[:SHOWN], 1):
             yield f"  map {number}: {map_line(self.experience, Found(at, ''))}"
+            for one in exceptions_of(self.experience, at):
+                yield f"    {one.words}"
         if status.kind:
             count = words.number(len(status.best), f"{status.kind} map")
             many = "" if status.all_best else "more than "
             yield f"  {many}{count}, cost {' '.join(map(str, status.cost))}"
         if self.plan is not None:
             yield f"  next: {_next(self.plan, self.experience, status.all_best)}"
+        elif status.best and self.experience.tolerance:
+            yield "  next: left out, as bearings are not exact, and what maps predict is"
         elif status.best and not self.fault:
             yield "  next: a walk that tells the best maps apart is not found"
         if self.fault:
@@ -76,6 +81,10 @@ class StepAnswer:
                 "count": len(status.best) if settled else None,
                 "all": status.all_best if settled else None,
                 "maps": [steps_json(at) for at in status.best],
+                "exceptions": [
+                    [one.document() for one in exceptions_of(self.experience, at)]
+                    for at in status.best
+                ],
             },
             "certain": {
                 "same": sorted(map(list, new.same)),

@@ -110,11 +110,11 @@ class OnlineSolver:
         self._control = clingo.Control(arguments)
         self._control.load(str(ENCODINGS / "online.lp"))
         self._control.load(str(ENCODINGS / "online/certain.lp"))
-        if not path_axiom:
-            self._control.load(str(ENCODINGS / "no_path_axiom.lp"))
         self._boundaries = Boundaries(self)
         self._control.register_propagator(self._boundaries)
+        # no_path_axiom.lp demands an entry of topomap.lp, and is not loaded.
         told = "straight_told. " * bool(self.experience.straight)
+        told += "no_path_axiom. " * (not path_axiom)
         self._control.add("base", [], f"online. slots({slots}). {told}#external consistent.")
         self.visits: list[int] = []  # the number of each step in the program
         self._numbered = 0

@@ -51,8 +51,8 @@ Heed = Callable[[clingo.Control], None]
 
 
 def serve(experience: Experience, query: "Query") -> bool:
-    """Whether there are phases for such a query. There are none where views may be wrong: all that
-    the phases find rests on what is seen; and on opposite gateways being on one path."""
+    """Whether there are phases for such a query. The phases rest on views that are
+    right and exact, and on opposite gateways being on one path."""
     if experience.parted or experience.tolerance or experience.straight:
         return False
     if "no_path_axiom" in query.parts:

@@ -75,6 +75,9 @@ class Program:
             entry, more = phases.program(experience, query)
             options += more
         elif query.encoding == "paper":
+            if experience.straight and query.parts & {"boundary", "exceptions"}:
+                said = "the statement has no left and right of paths whose gateways are told"
+                raise InputError(f"{said}: not with straight/3")
             entry += beyond(experience)
         if experience.assumed:
             query = query.having("query")

@@ -11,7 +11,7 @@ import clingo
 from topomap.model.experience import Experience, Misread
 from topomap.model.found import Cube, Found
 from topomap.model.query import Query
-from topomap.model.vocabulary import PRUNING
+from topomap.model.vocabulary import CHOSEN
 from topomap.runtime.folders import ENCODINGS
 from topomap.runtime.version import VERSION
 from topomap.runtime.watch import MEMORY, Stopped, Watch
@@ -25,7 +25,10 @@ def demand_cover(
 ) -> None:
     """Demand of clingo that each hypothesis after a step begins with just one of the cubes,
     so that no answer depends on how the search has parted the tree."""
-    level = replace(query, parts=query.parts & set(PRUNING), horizon=step)
+    kept = set(CHOSEN)
+    if "no_path_axiom" in query.parts:  # a later link can make the map perpendicular then
+        kept.remove("perpendicular")
+    level = replace(query, parts=query.parts & kept, horizon=step)
     known, parted = watch.found, set(cubes)
     for found in hypotheses(experience, level, watch):
         if found and sum(found.at[:size] in parted for size in range(1, step + 2)) != 1:
