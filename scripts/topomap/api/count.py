@@ -12,6 +12,7 @@ from topomap.paper import statistics
 from topomap.runtime.checks import flag, whole
 from topomap.runtime.journal import Journal
 from topomap.runtime.watch import Attempt, Watch
+from topomap.search.merging import Merging
 from topomap.solver.crews import crew as crew_of
 from topomap.solver.share import Crew
 
@@ -71,11 +72,13 @@ def count(
     bound: int | None = None,
     horizon: int | None = None,
     circumscribe: bool = False,
+    merging: bool = False,
     timeout: float | None = None,
     jobs: int = 1,
     **parts: Unpack[Parts],
 ) -> Counts:
-    """Count the search tree by clingo, as the paper's Figure 4 does.
+    """Count the search tree by clingo, as the paper's Figure 4 does; or by merging hypotheses that
+    have the same future, which counts what is too much to be listed.
 
     Parameters:
         experience: what was seen and done.
@@ -83,6 +86,8 @@ def count(
         horizon: the last step that counts.
         circumscribe: count the circumscribed maps, too, as ``solve`` gives them: the figure
             ``circumscribed``, and ``circumscribed_kind``, which says of what kind they are.
+        merging: count by merging: the hypotheses after each step, the closed maps, and those that
+            are perpendicular, too. The other figures are None.
         timeout: seconds after which it stops.
         jobs: how many processes do the work.
         parts: what the maps are to have; not genus and minimal.
@@ -93,15 +98,36 @@ def count(
     Raises:
         TypeError: no experience.
         ValueError: an unknown part, or a number that cannot be.
-        InputError: an experience that cannot be, one line that names step and fault.
+        InputError: an experience that cannot be, one line that names step and fault; or, with
+            ``merging``, one that tells what cannot be merged.
     """
     query = query_of(parts, bound=bound, horizon=horizon, allowed=(*DEMANDS, *RELAXING))
     circumscribe = flag("circumscribe", circumscribe)
     jobs = whole("jobs", jobs, 1)
     demand_pairs(experience, "count")
     watch = begin(experience, timeout)
+    if flag("merging", merging):
+        if circumscribe or jobs > 1:
+            raise ValueError("merging: not with circumscribe or jobs")
+        return merged_under(watch, experience, query)
     with crew_of(jobs) as crew:
         return count_under(watch, experience, query, Journal(), crew, circumscribe)
+
+
+def merged_under(watch: Watch, experience: Experience, query: Query) -> Counts:
+    """The hypotheses after each step, and how many of the maps are closed, by merging; under the
+    watch of a command. What is soonest found comes first."""
+    figures: dict[str, Any] = {"per_step": [], **dict.fromkeys(statistics.KEYS)}
+    asked = {"perpendicular": ("closed", "perpendicular"), "closed_text": ("closed",)}
+    with Attempt() as attempt:
+        for key, parts in asked.items():
+            watch.title(f"{key} maps")
+            *_, figures[key] = Merging(experience, query.having(*parts)).counts(watch)
+        watch.title("hypotheses")
+        for many in Merging(experience, query).counts(watch):
+            figures["per_step"].append(many)
+        figures.update(nodes=sum(figures["per_step"]), final=figures["per_step"][-1])
+    return Counts(figures, attempt.fault)
 
 
 def count_under(

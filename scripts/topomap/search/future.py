@@ -139,8 +139,8 @@ class Future:
         return max(arrival - 1, before)
 
     def last_left(self, gateway: int, possible: int) -> int:
-        """The last visit from which a step can leave by a gateway if no visits but those of the bits
-        ``possible`` can be at its place; -1 if there is none."""
+        """The last visit from which a step can leave by a gateway if no visits but those of the
+        bits ``possible`` can be at its place; -1 if there is none."""
         if possible < 0:
             return self.experience.steps - 1
         slot = gateway % self.slots

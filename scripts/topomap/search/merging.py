@@ -75,7 +75,7 @@ class Merging:
     become closed or perpendicular maps."""
 
     def __init__(self, experience: Experience, query: Query):
-        """Raises InputError, one line, if there is anything by which hypotheses cannot be merged."""
+        """Raises InputError, one line, if there is what keeps hypotheses from being merged."""
         if query.horizon is not None:
             experience = experience.cut(query.horizon)
         if why := refusal(experience, query):
@@ -228,10 +228,13 @@ class Merging:
         for gateway in kept:
             number.setdefault(pending[gateway], len(number))
         path = tuple(number[pending[gateway]] for gateway in kept)
-        meets, *more = (self._renumbered(of, number) for of in relations[: 1 + 2 * self.perpendicular])
+        meets, *more = (
+            self._renumbered(of, number) for of in relations[: 1 + 2 * self.perpendicular]
+        )
         if more:
             more[0] = tuple(
-                of & ~(mine | 1 << n) for n, (of, mine) in enumerate(zip(more[0], meets, strict=True))
+                of & ~(mine | 1 << n)
+                for n, (of, mine) in enumerate(zip(more[0], meets, strict=True))
             )
             more[1] = tuple(
                 of & ~(mine | two | 1 << n)
@@ -260,7 +263,14 @@ class Merging:
         known = level.get(key)
         if known is None:
             state = State(
-                here, tuple(kept), path, tuple([(g, ends[g]) for g in out]), meets, twice, thrice, places
+                here,
+                tuple(kept),
+                path,
+                tuple([(g, ends[g]) for g in out]),
+                meets,
+                twice,
+                thrice,
+                places,
             )
             level[key] = [state, many]
         else:
@@ -345,7 +355,9 @@ class Merging:
             if not again or len({*turned.values()}) == len(rings):
                 break
             names = {name: n for n, name in enumerate(sorted({*turned.values()}))}
-            spot = {g: (names[turned[p]], n) for p, ring in rings.items() for n, g in enumerate(ring)}
+            spot = {
+                g: (names[turned[p]], n) for p, ring in rings.items() for n, g in enumerate(ring)
+            }
             on: dict[int, list[tuple[int, int]]] = {}
             for gateway in pending:
                 on.setdefault(paths[gateway], []).append(spot[gateway])
@@ -385,4 +397,3 @@ def _rename(relation: list[int], path: int, other: int) -> None:
         relation[one] |= 1 << path
     both = ~((1 << path) | (1 << other))
     relation[path] &= both
-
