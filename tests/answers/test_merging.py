@@ -20,8 +20,6 @@ def agree(seen, truth, bound=None):
     for parts in ASKED:
         *_, many = Merging(seen, Query(frozenset(parts), bound)).counts()
         assert many == len(truth.having(*parts, bound=bound)), (parts, bound, seen.facts())
-    counted = [*Merging(seen, Query()).counts()]
-    assert counted == [len(level) for level in truth.levels], seen.facts()
     TRIED["experiences counted by merging"] += 1
 
 
