@@ -219,7 +219,7 @@ class Merging:
         come can use."""
         uses = self._uses(step, here, pending, links)
         kept = [g for g in pending if g in uses]
-        if self.closed and len(kept) < len(pending):
+        if self.closed and (len(kept) < len(pending) or (kept and step == self.experience.steps)):
             return
         ends = {g: end for g, end in links.items() if uses.get(g, (0, 0))[1]}
         order = self._ordered(here, kept, pending, relations[0], ends, uses)
