@@ -585,7 +585,7 @@ def test_each_map_names_what_it_breaks(tmp_path, capsys):
     call = ["solve", str(oxbow), "--planar", "--optimal", "--json", "-o", str(maps)]
     assert cli.main(call) == 0
     assert cli.main(["check", "--all", str(oxbow), str(maps), "--json"]) == 0
-    (told,) = json.loads(capsys.readouterr().out)["maps"]
+    (told,) = json.loads(capsys.readouterr().out)["judged"]
     text = unescape(out.read_text())
     assert (told["breaks"].keys(), len(told["exceptions"])) == ({"boundary", "perpendicular"}, 5)
     keeps = ", ".join(told["keeps"])

@@ -483,7 +483,8 @@ class Experience:
 
     def slot_at(self, place: int, slot: int, visit: int, seen: int) -> int:
         """The slot of the gateway of a place that a visit sees in the slot ``seen``, if it stands
-        at the place's gateway ``slot``. Where bearings are not exact, the gateways of both are
+        at the place's gateway ``slot``; ``place`` may be any other visit of the place, too, and
+        slots are then those of that visit. Where bearings are not exact, the gateways of both are
         numbered clockwise."""
         if not self.tolerance:
             return (slot + seen) % self.slots

@@ -88,7 +88,9 @@ def parse(
         raise InputError(fault.of(source))
     seen = facts.experience()
     if tolerance and noisy:
-        raise InputError(f"{source}: misreadings are of slots, which are exact: no tolerance")
+        raise InputError(
+            f"{source}: where views may be misread, bearings must be exact: no tolerance"
+        )
     return seen.within(tolerance=tolerance)
 
 

@@ -86,7 +86,9 @@ def gather(
     of PARTS_OF) or by a file, or are given. Raises InputError where one is no map of it, or
     where bearings are not exact: then it is not told what two maps predict differently."""
     if experience.tolerance:
-        raise InputError("topomap explore: what maps predict is exact: no tolerance")
+        raise InputError(
+            "topomap explore: maps predict exact bearings, so a tolerance cannot be asked for"
+        )
     relaxed = sorted(query.parts & {*RELAXING})
     found: dict[At, str] = {}
     fault = None

@@ -365,15 +365,7 @@ class OnlineSolver:
             if step - 1 in first or step in first:
                 here, shift = first.get(step - 1, (step - 1, 0))
                 there, slot = first.get(step, (step, 0))
-                yield here, self._turned(here, shift, step - 1, turn), there, slot
-
-    def _turned(self, here: int, shift: int, visit: int, turn: int) -> int:
-        """The slot at visit ``here`` of the gateway that another visit of its place, which stands
-        at its gateway ``shift``, sees in the slot ``turn``."""
-        if not self.experience.tolerance:
-            return (shift + turn) % self.experience.slots
-        star, view = sorted(self.experience.views[here]), sorted(self.experience.views[visit])
-        return star[(star.index(shift) + view.index(turn)) % len(star)]
+                yield here, self.experience.slot_at(here, shift, step - 1, turn), there, slot
 
     def _dstates(self, model: clingo.Model) -> tuple[DState, ...]:
         step = {visit: number for number, visit in enumerate(self.visits)}
