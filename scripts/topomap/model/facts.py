@@ -9,7 +9,7 @@ marker), ``compass/2``, ``shift/3``, ``length/2``, ``straight/3``, ``same/2`` an
 import difflib
 import itertools
 import re
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -45,6 +45,7 @@ SIGNATURES = {  # the facts of an instance
     "start": "start(T)",
     "look": "look(T)",
 }
+FORMS = {name: form.count(",") + 1 for name, form in SIGNATURES.items()}
 WHOLE = {  # of the other facts, the steps are such numbers
     "slots": "K is a whole number",
     **dict.fromkeys(("view", "turn", "compass"), "a step and a slot are whole numbers"),
@@ -157,16 +158,26 @@ class Facts:
             line = 1 + text[: -len(text.lstrip())].count("\n")
             yield Fault("the facts of an instance are wanted, not JSON or a rule", line)
             return
-        for line, fact in ground_facts(text):
+        for line, statement, ends in statements(text):
+            # Most facts hold nothing but small numbers: clingo need not read these.
+            if ends and (plain := _NUMBERS.fullmatch(statement)):
+                name, numbers = plain[1], [*map(int, plain[2].split(","))]
+                if len(numbers) == FORMS.get(name) and name != "landmark":
+                    self._add(line, name, numbers)
+                    continue
+            fact = _fact(statement, ends)
             if said := fact if isinstance(fact, str) else misfit(fact):
                 self.unread += 1
                 yield Fault(said, line)
             elif isinstance(fact, clingo.Symbol):
-                self._add(line, fact)
+                number = clingo.SymbolType.Number
+                terms = [one.number if one.type == number else str(one) for one in fact.arguments]
+                self._add(line, fact.name, terms)
 
-    def _add(self, line: int, fact: clingo.Symbol) -> None:
-        name, arguments = fact.name, fact.arguments
-        first = arguments[0].number
+    def _add(self, line: int, name: str, arguments: Sequence[Any]) -> None:
+        """Take in a fact that is of one of the forms. Its arguments are numbers, and texts where
+        they are other terms."""
+        first = arguments[0]
         if name == "slots":
             self.slots.setdefault(first, line)
             return
@@ -178,17 +189,17 @@ class Facts:
         elif name in RESTS:
             self.rests[name].setdefault(first, line)
         elif name in PAIRS:
-            other = arguments[1].number
+            other = arguments[1]
             self.steps.setdefault(other, line)
             self.pairs[name].setdefault((first, other), line)
         elif name in self.known:
-            numbers = tuple(argument.number for argument in arguments[1:])
+            numbers = tuple(arguments[1:])
             self.known[name].setdefault(first, {}).setdefault(numbers, line)
         elif name == "landmark":
             self.landmarks.setdefault(first, {}).setdefault(str(arguments[1]), line)
         else:
             told = self.views if name == "view" else self.turns
-            told.setdefault(first, {}).setdefault(arguments[1].number, line)
+            told.setdefault(first, {}).setdefault(arguments[1], line)
 
     def _checked(self, noisy: bool) -> Iterator[Fault]:
         """What is wrong with the facts together: with slots(K), then step by step."""
@@ -412,7 +423,7 @@ def misfit(fact: clingo.Symbol, forms: Mapping[str, str] = SIGNATURES) -> str | 
     by name, or it has another term where a number is wanted."""
     name, arguments = fact.name, fact.arguments
     text = cut_short(str(fact))
-    known = {name: form.count(",") + 1 for name, form in forms.items()}
+    known = FORMS if forms is SIGNATURES else {n: form.count(",") + 1 for n, form in forms.items()}
     named = fact.positive and name in MARKER and len(arguments) == 2
     if named and arguments[0].type == clingo.SymbolType.Number:
         return None
@@ -439,13 +450,21 @@ _TOKEN = re.compile(rf'%\*|%[^\n]*|\.\.|{STRING}|\.|[^%".]+|"', re.DOTALL)
 _COMMENT = re.compile(r"%\*|\*%|[^%*]+|[%*]", re.DOTALL)
 _FACT = re.compile(r"-?[a-z]\w*\(.*\)", re.DOTALL)
 _DECIMAL = re.compile(r"[a-z]\w*\([^()]*,\s*-?[0-9]+", re.DOTALL)  # cut at a decimal point
+_NUMBERS = re.compile(r"([a-z]\w*)\(((?:0|-?[1-9][0-9]{0,8})(?:,(?:0|-?[1-9][0-9]{0,8}))*)\)")
 _NO_STOP = re.compile(r"\)\s+[a-z]\w*\(")
 
 
 def ground_facts(text: str, line: int = 1) -> Iterator[tuple[int, clingo.Symbol | str]]:
     """The ground facts of a text, each with the line it begins in; the first line is ``line``.
-    In the place of a statement that is not a ground fact there is a text that says what it is.
-    A script is not read, nor is what comes after it, because its text has no statements."""
+    In the place of a statement that is not a ground fact there is a text that says what it is."""
+    told = statements(text, line)
+    return ((begins, _fact(statement, ends)) for begins, statement, ends in told)
+
+
+def statements(text: str, line: int = 1) -> Iterator[tuple[int, str, bool]]:
+    """The statements of a text, without comments and full stops, each with the line it begins in,
+    and with whether it ends: the last one may not. The first line is ``line``. A script is not
+    read, nor is what comes after it, because its text has no statements."""
     fact: list[str] = []
     begins = line
     position = depth = 0
@@ -457,7 +476,7 @@ def ground_facts(text: str, line: int = 1) -> Iterator[tuple[int, clingo.Symbol 
             depth -= token == "*%"
         elif token == ".":
             statement = "".join(fact).strip()
-            yield begins, _fact(statement)
+            yield begins, statement, True
             if statement.startswith("#script"):
                 return
             fact = []
@@ -467,11 +486,13 @@ def ground_facts(text: str, line: int = 1) -> Iterator[tuple[int, clingo.Symbol 
             fact.append(token)
         line += token.count("\n")
     if fact or depth:
-        yield begins, f"{quoted(''.join(fact)) if fact else 'a comment'} does not end"
+        yield begins, "".join(fact), False
 
 
-def _fact(text: str) -> clingo.Symbol | str:
-    """The ground fact of a text, or why there is none."""
+def _fact(text: str, ends: bool) -> clingo.Symbol | str:
+    """The ground fact of a statement, or why there is none."""
+    if not ends:
+        return f"{quoted(text) if text else 'a comment'} does not end"
     if _DECIMAL.fullmatch(text):
         return f"{quoted(text)} is not a ground fact: numbers are whole, without a decimal point"
     if not _FACT.fullmatch(text):

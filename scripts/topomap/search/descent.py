@@ -70,6 +70,7 @@ class Descent:
         self._worst: Cost | None = None  # what they cost: no map is wanted that costs more
         # Of each node on the way to the one where the search stands: its children that are to be
         # visited, the share of the tree below each, and what a map below them costs at least.
+        self._decided: list[int] = []  # where these nodes arrived
         self._way: list[tuple[list[int], float, Cost]] = []
 
     @property
@@ -130,23 +131,33 @@ class Descent:
             return
         minimises = self.query.optimizes
         way.append(self._open(1.0))
+        begun, decided = tuple(node.at), self._decided
+        decided.clear()
+        look, greedy = self.nodes - self.nodes % OFTEN + OFTEN, minimises
         while way:
             children, share, _ = way[-1]
             if not children:
                 way.pop()
                 if way:
                     node.undo()
+                    decided.pop()
                 continue
-            node.enter(children.pop())
-            self.nodes += 1
-            if self.nodes % OFTEN == 0:
+            decided.append(children.pop())
+            before = node.steps
+            alive = self._enter(decided[-1])
+            self.nodes += node.steps - before
+            if self.nodes >= look:
+                look = self.nodes - self.nodes % OFTEN + OFTEN
                 if self._watch:
                     self._watch.tick()
                 if self._heed:
                     self._heed(self)
-                if self.nodes == GREEDY_AFTER and minimises:
-                    yield from self._greedily()
-            if node.steps == steps:
+                if self.nodes >= GREEDY_AFTER and greedy:
+                    greedy = False
+                    yield from self._greedily(begun)
+            if not alive:
+                pass
+            elif node.steps == steps:
                 yield from self._here()
             elif self._worst is None or self._cost() <= self._worst:
                 below = self._open(share)
@@ -155,34 +166,55 @@ class Descent:
                     continue
             self.passed += share
             node.undo()
+            decided.pop()
 
-    def _greedily(self) -> Iterator[Found]:
+    def _enter(self, arrival: int) -> bool:
+        """Go on to a child, and over known links; False if there can be no map below."""
+        self.node.enter(arrival)
+        return self.node.run()
+
+    def _greedily(self, begun: Sequence[int]) -> Iterator[Found]:
         """Best-first search by the paper's policy (section IV): the node whose map costs least so
         far comes first, and among equals the deepest. It gives the first map that it finds, and
         better ones. It visits at most GREEDY nodes, and once it has found a map after n nodes, at
-        most 2 * n + OFTEN. A good map is found soon that way, and cuts the tree."""
-        node, steps, here = self.node, self.node.experience.steps, tuple(self.node.at)
-        node.go(here[:1])
-        border: list[tuple[Cost, int, tuple[int, ...]]] = [(self._of(node.cost), 0, here[:1])]
+        most 2 * n + OFTEN. A good map is found soon that way, and cuts the tree. A node is known by
+        its decisions: where it arrived by each step that was not over a known link. Afterwards the
+        search stands where it stood, below the node ``begun``."""
+        node, steps = self.node, self.node.experience.steps
+        node.go(begun[:1])
+        border: list[tuple[Cost, int, tuple[int, ...]]] = [(self._of(node.cost), 0, ())]
         most, nodes = GREEDY, 0
+        here: tuple[int, ...] = ()
         while border and nodes < most:
-            *_, at = heapq.heappop(border)
-            node.go(at)
+            *_, decided = heapq.heappop(border)
+            self._go(here, decided)
+            here = decided
             nodes += 1
             if self._watch and nodes % OFTEN == 0:
                 self._watch.tick()
             if self._worst is not None and self._cost() >= self._worst:
                 continue
             for arrival in node.children():
-                node.enter(arrival)
-                if node.steps == steps:
+                alive = self._enter(arrival)
+                if alive and node.steps == steps:
                     for found in self._here():
                         most = min(most, 2 * nodes + OFTEN)
                         yield found
-                else:
-                    heapq.heappush(border, (self._of(node.cost), -node.steps, (*at, arrival)))
+                elif alive:
+                    heapq.heappush(border, (self._of(node.cost), -node.steps, (*decided, arrival)))
                 node.undo()
-        node.go(here)
+        node.go(begun[:1])
+        node.go(begun)
+        self._go((), self._decided)
+
+    def _go(self, here: Sequence[int], decided: Sequence[int]) -> None:
+        """Go from one node to another one; each is known by its decisions."""
+        pairs = enumerate(zip(here, decided, strict=False))
+        common = next((n for n, (a, b) in pairs if a != b), min(len(here), len(decided)))
+        for _ in here[common:]:
+            self.node.undo()
+        for arrival in decided[common:]:
+            self._enter(arrival)
 
     def _open(self, share: float) -> tuple[list[int], float, Cost]:
         """The children of the node where the search stands, in reverse order; the share of the tree

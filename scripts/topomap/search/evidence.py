@@ -13,16 +13,18 @@ RULES = ("compass", "odometry", "apart", "same", "length")
 
 
 class Evidence:
-    """What an experience tells besides views."""
+    """What an experience tells besides views; without the ``compass``, if that is seen to by other
+    means."""
 
-    def __init__(self, experience: Experience):
+    def __init__(self, experience: Experience, compass: bool = True):
         self.slots, self.drift, self.stretch = (
             experience.slots,
             experience.drift,
             experience.stretch,
         )
         self.lengths = (None, *experience.lengths) if experience.lengths else ()
-        self._compass, self._tolerance = experience.compass, experience.tolerance
+        self._compass = experience.compass if compass else ()
+        self._tolerance = experience.tolerance
         # Of each visit: where the unbroken row of shifts began that ends there, where it is by
         # these, and how long the way was.
         self._track: list[tuple[int, int, int, int]] = []

@@ -17,8 +17,8 @@ from topomap.search.hypothesis import Hypothesis
 # Visits T < U of one place, and by how many slots U stands clockwise of where T stands.
 Pair = tuple[int, int, int]
 MOST_FACES = 100_000  # that are remembered
-MOST_BITS = 50_000  # of a set of visits, each with a slot: else no such set is kept
-MOST_PAIRS = 100_000  # of visits that look alike: if there are more, no pair is ruled out
+MOST_BITS = 50_000  # of a set of visits, each with a slot
+MOST_PAIRS = 100_000  # of visits that look alike: pairs of later visits are not looked at
 
 
 @lru_cache(maxsize=4)
@@ -63,16 +63,24 @@ class Future:
         self.kinds_of: list[list[tuple[int, int]]] = []
         self.place_by: list[int] = []
         self._in_time: dict[tuple[int, ...], int] = {}
+        # The last of the visits whose pairs are looked at: of a long exploration these are visits of
+        # its beginning.
+        self.paired = 0
         pairs = self._pairs()
-        self.pairs = None if pairs is None else len(pairs)
-        # Of each visit, the other ones that can be of one place with it, and how many slots
-        # clockwise of it they stand; None if that is not known, or takes too many bits.
-        self._others: list[list[tuple[int, int]]] | None = None
-        if pairs is not None and self.slots * len(self.arrival) <= MOST_BITS:
-            self._others = [[] for _ in self.arrival]
-            for one, other, apart in pairs:
-                self._others[one].append((other, apart))
-                self._others[other].append((one, -apart))
+        self.pairs = len(pairs) if self.paired == experience.steps else None
+        # Of each of these visits, the other ones that can be of one place with it, and how many
+        # slots clockwise of it they stand.
+        self._others: list[list[tuple[int, int]]] = [[] for _ in range(self.paired + 1)]
+        for one, other, apart in pairs:
+            self._others[one].append((other, apart))
+            self._others[other].append((one, -apart))
+        # Of each visit the kind of its place, named by the least kind of its gateways; and of each
+        # such kind, how many places each map has at least.
+        self.place_kind = [
+            min(kinds[step * self.slots + slot] for slot in view)
+            for step, view in enumerate(experience.views)
+        ]
+        self.needed = self._needed()
         self._possible: dict[tuple[int, int], int] = {}
         self._visits_by: dict[int, tuple[int, int]] = {}
         for step, view in enumerate(experience.views):
@@ -114,12 +122,14 @@ class Future:
     def possible_visits(self, step: int, slot: int) -> int:
         """The visits that can be of one place with the visit after ``step``, if that one stands at
         ``slot`` of the place. Bit ``T * slots + S`` is set if visit T can be there and stand at
-        slot S. If too much is to be looked at, all bits are set (-1)."""
-        if self._others is None:
+        slot S. All bits are set of the visits after ``paired``, whose pairs are not looked at."""
+        if step > self.paired:
             return -1
         known = self._possible.get((step, slot))
         if known is None:
             known = 1 << (step * self.slots + slot)
+            if self.paired < self.experience.steps:
+                known |= -1 << ((self.paired + 1) * self.slots)
             for other, apart in self._others[step]:
                 known |= 1 << (other * self.slots + (slot + apart) % self.slots)
             self._possible[step, slot] = known
@@ -156,6 +166,31 @@ class Future:
             leave |= 1 << ((step - 1) * self.slots + (slot - self.turns[step]) % self.slots)
         return arrive, leave
 
+    def _needed(self) -> list[int]:
+        """How many places of each kind a map has at least: as many as there are visits to such
+        places of which no two can be of one place. They are sought greedily: among those of one
+        straight run, and among those whose pairs are looked at."""
+        needed = [0] * (max(self.place_kind) + 1)
+        visits: list[list[int]] = [[] for _ in needed]
+        for visit, kind in enumerate(self.place_kind[: self.paired + 1]):
+            visits[kind].append(visit)
+        for kind, of in enumerate(visits):
+            others = {visit: {other for other, _ in self._others[visit]} for visit in of}
+            left, many = {*of}, 0
+            while left:
+                chosen = min(left, key=lambda visit: (len(others[visit] & left), visit))
+                left -= others[chosen]
+                left.discard(chosen)
+                many += 1
+            needed[kind] = many
+        on_run: Counter[int] = Counter()
+        for visit, kind in enumerate(self.place_kind):
+            if visit < 2 or not self.experience.goes_straight(visit):
+                on_run = Counter(self.place_kind[max(0, visit - 1) : visit])
+            on_run[kind] += 1
+            needed[kind] = max(needed[kind], on_run[kind])
+        return needed
+
     def _retraced(self) -> set[int]:
         """The steps that only go back over links of earlier steps, so that they add no link in any
         map."""
@@ -174,8 +209,9 @@ class Future:
                 back = 0
         return known
 
-    def _pairs(self) -> set[Pair] | None:
-        """The pairs of visits that can be of one place; None if too many visits look alike.
+    def _pairs(self) -> set[Pair]:
+        """The pairs of visits that can be of one place, up to the last visit at which not too many
+        look alike (``paired``).
 
         The same is seen at both visits of such a pair, and they are not on one straight run of
         steps (the path axiom). What follows from the pair must be possible, too: if both visits
@@ -183,24 +219,29 @@ class Future:
         arrived, then the visits at the other ends of these links are of one place, and the two
         steps along the link are of like length. And the pair agrees with compass and odometry."""
         told = self.evidence
-        by_kind: dict[int, list[int]] = defaultdict(list)
-        for gateway, kind in self.kinds.items():
-            by_kind[kind].append(gateway)
-        looks = [by_kind[kind] for kind in self.arrival]
-        if sum(map(len, looks)) > 2 * MOST_PAIRS:
-            return None
         slots, turns = self.slots, self.turns
+        by_kind: dict[int, list[int]] = defaultdict(list)  # the gateways of the visits so far
+        looks: list[list[int]] = []
+        many = 0
+        for visit, view in enumerate(self.experience.views[: MOST_BITS // slots]):
+            looks.append([*by_kind[self.arrival[visit]]])
+            many += len(looks[-1])
+            if many > MOST_PAIRS:
+                break
+            self.paired = visit
+            for gateway in (visit * slots + slot for slot in view):
+                by_kind[self.kinds[gateway]].append(gateway)
         run, runs = [0], 0
         for step in range(2, len(turns)):
             runs += not self.experience.goes_straight(step)
             run.append(runs)
         # A visit is on two runs: the one by which it was reached, and the one by which it was left.
-        of = [{*run[max(0, visit - 1) : visit + 1]} for visit in range(len(self.arrival))]
+        of = [{*run[max(0, visit - 1) : visit + 1]} for visit in range(self.paired + 1)]
         pairs: set[Pair] = set()
-        for visit, gateways in enumerate(looks):
+        for visit, gateways in enumerate(looks[: self.paired + 1]):
             for gateway in gateways:
                 before, slot = divmod(gateway, slots)
-                if before >= visit or of[before] & of[visit]:
+                if of[before] & of[visit]:
                     continue
                 if not (told and told.refuses(before, visit, slot)):
                     pairs.add((before, visit, slot))
@@ -217,7 +258,7 @@ class Future:
                     following = (one, other, apart % slots)
                     if one > other:
                         following = (other, one, -apart % slots)
-                if following == pair:
+                if following == pair or max(one, other) > self.paired:
                     continue
                 if following not in pairs:
                     wrong.append(pair)

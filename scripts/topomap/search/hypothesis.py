@@ -9,7 +9,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from itertools import combinations
 from typing import Any, NamedTuple
 
-from topomap.model.experience import DState, Experience
+from topomap.model.experience import DState, Experience, Slots
 from topomap.model.topology import TopologicalMap
 from topomap.search.evidence import RULES as KNOWN
 from topomap.search.evidence import Evidence
@@ -69,20 +69,28 @@ class Hypothesis:
         self.stars: list[Face] = []  # of the place that a step makes, counter-clockwise
         self.views: dict[int, int] = {}  # of each gateway, the number of what is seen from it
         numbers: dict[Any, int] = {}
-        seen = zip(experience.views, experience.landmarks, strict=True)
-        for step, (view, landmarks) in enumerate(seen):
+        # The compass is a part of what is seen if it is told of each visit, and exact. What is seen
+        # from the gateways of a visit is worked out once for all visits that see the same.
+        north = experience.compass_told() == experience.steps + 1 and not experience.tolerance
+        known: dict[Any, list[tuple[int, int]]] = {}
+        for step, view in enumerate(experience.views):
+            landmarks, pairs = experience.landmarks[step], self._told_straight(step)
+            points = experience.compass[step] if north else None
+            seen = (view, landmarks, pairs, points)
+            if seen not in known:
+                known[seen] = [
+                    (slot, numbers.setdefault(self._seen_from(slot, *seen), len(numbers)))
+                    for slot in sorted(view, reverse=True)
+                ]
             first = step * self.slots
-            self.stars.append(tuple(first + slot for slot in sorted(view, reverse=True)))
-            for slot in view:
-                star = frozenset((other - slot) % self.slots for other in view)
-                seen_from = (star, landmarks, self._pairs_from(step, slot))
-                self.views[first + slot] = numbers.setdefault(seen_from, len(numbers))
+            self.stars.append(tuple([first + slot for slot, _ in known[seen]]))
+            self.views.update((first + slot, number) for slot, number in known[seen])
         # Of each step: after which steps markers were put down that lie somewhere, and whether each
         # is seen now.
         self.lying: dict[int, list[tuple[int, bool]]] = {}
         for step, down, spotted, _ in experience.lying():
             self.lying.setdefault(step, []).append((down, spotted))
-        self.evidence = Evidence(experience)
+        self.evidence = Evidence(experience, compass=not north)
         # Of each place its visits, and of each link (by the lower of its gateways) the steps along
         # it, if these are asked for.
         self.visits: dict[int, list[int]] = {0: [0]}
@@ -94,15 +102,6 @@ class Hypothesis:
         self.paths: dict[int, int] = {}
         self.meets: dict[int, int] = {}
         self._axis = {gateway: self._axis_of(gateway) for star in self.stars for gateway in star}
-        # Of each place, its axes, and which others each of them meets there.
-        self._axes = [
-            [
-                (axis, sum(1 << other for other in axes if other != axis))
-                for axes in [{self._axis[gateway] for gateway in star}]
-                for axis in axes
-            ]
-            for star in self.stars
-        ]
         self.places = 0
         self.matches = 0  # links between known places: m in the paper's equation (1)
         self._joined: dict[int, int] = {}  # an axis to another one of its path
@@ -112,13 +111,24 @@ class Hypothesis:
         self._trail: list[Link | None] = []
         self._add_place(0)
 
-    def _pairs_from(self, step: int, slot: int) -> frozenset[frozenset[int]]:
-        """Which gateways are told to be on one path, as slots clockwise from this one."""
+    def _told_straight(self, step: int) -> frozenset[Slots]:
+        """Which gateways of a visit are told to be on one path."""
         told = self.experience.straight
-        return frozenset(
-            frozenset((other - slot) % self.slots for other in pair)
-            for pair in (told[step] if told else ())
-        )
+        return told[step] if told else frozenset()
+
+    def _seen_from(
+        self,
+        slot: int,
+        view: frozenset[int],
+        landmarks: frozenset[str],
+        pairs: frozenset[Slots],
+        points: int | None,
+    ) -> tuple[Any, ...]:
+        """What is seen from a gateway of a visit, in slots clockwise from it, and where it points
+        if the visit's own gateway points to ``points``."""
+        star = frozenset((other - slot) % self.slots for other in view)
+        told = frozenset(frozenset((end - slot) % self.slots for end in pair) for pair in pairs)
+        return star, landmarks, told, None if points is None else (points + slot) % self.slots
 
     def _axis_of(self, gateway: int) -> int:
         """A name for the axis on which a gateway lies at its place: the lower slot of it."""
@@ -135,7 +145,8 @@ class Hypothesis:
     @property
     def dstates(self) -> tuple[DState, ...]:
         """The place and the gateway after each step, as ``at/3`` names them."""
-        return tuple(divmod(gateway, self.slots) for gateway in self.at)
+        known = {gateway: divmod(gateway, self.slots) for gateway in {*self.at}}
+        return tuple(map(known.__getitem__, self.at))
 
     @property
     def cost(self) -> tuple[int, int]:
@@ -356,8 +367,11 @@ class Hypothesis:
         step, (place, slot) = self.steps + 1, divmod(gateway, self.slots)
         if self._alike(gateway):
             return self.denied(gateway) if self.marked(gateway) else "marker"
-        alike = self.experience.looks_alike(place, slot, step)
-        return "landmark" if alike else "view"
+        if not self.experience.looks_alike(place, slot, step):
+            return "view"
+        if not self.experience.alike(place, slot, step):
+            return "landmark"
+        return "compass" if self.marked(gateway) else "marker"
 
     def _joins(self, path: int, other: int) -> bool:
         """Whether a link may make these paths one: by the path axiom they are two and share no
@@ -482,14 +496,21 @@ class Hypothesis:
 
     def _add_place(self, place: int) -> None:
         self.places += 1
-        for axis, others in self._axes[place]:
+        axes = {self._axis[gateway] for gateway in self.stars[place]}
+        every = sum(1 << axis for axis in axes)
+        for axis in axes:
             self.paths[axis] = 1 << place
-            self.meets[axis] = others
+            self.meets[axis] = every ^ (1 << axis)
 
     def _remove_place(self, place: int) -> None:
         self.places -= 1
-        for axis, _ in self._axes[place]:
+        for axis in {self._axis[gateway] for gateway in self.stars[place]}:
             del self.paths[axis], self.meets[axis]
+
+    def run(self) -> bool:
+        """Go on over known links, as far as this goes fast; False if there can be no map below.
+        What is gone is undone together with the last step that was entered."""
+        return True
 
     def goto(self, dstates: Sequence[DState]) -> None:
         """Go to another node of the tree, by way of what the two have in common."""
@@ -501,7 +522,7 @@ class Hypothesis:
         common = next((step for step, (a, b) in pairs if a != b), min(len(self.at), len(at)))
         while len(self.at) > common:
             self.undo()
-        for arrival in at[common:]:
+        for arrival in at[len(self.at) :]:
             self.enter(arrival)
 
 

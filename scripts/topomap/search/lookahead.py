@@ -11,12 +11,14 @@ from topomap.search.hypothesis import Hypothesis, after
 
 
 class _Before(NamedTuple):
-    """What a step changed: at which place, and what of it was known before."""
+    """What a step changed, and the ``ran`` steps over known links that were gone after it: where it
+    arrived, and what was known before of the places and gateways of which more is known now."""
 
     place: int
-    possible: int | None
+    possible: dict[int, int]
     linked_by: dict[int, int]
     in_time: int
+    ran: int = 0
 
 
 class LookAhead(Hypothesis):
@@ -49,6 +51,11 @@ class LookAhead(Hypothesis):
             2 * len({self._axis[gateway] for gateway in star}) - len(star) for star in self.stars
         ]
         self.path_ends = self.dead_ends[0]
+        # How many places of each kind the map has, and how many places each map below this node has
+        # at least.
+        self.places_of = [0] * len(self.future.needed)
+        self.least_places = sum(self.future.needed)
+        self._count_place(0, 1)
         self._before: list[_Before] = []
         for gateway in self.stars[0] if self._counted else ():
             self.pending[self.views[gateway]] += 1
@@ -67,12 +74,24 @@ class LookAhead(Hypothesis):
         else:
             due = self._due(out, step)
             arrivals = self._matches(out, step, due)
-            room = self.bound is None or self.places < self.bound
+            more = self._exceeds(self.future.place_kind[step])
+            room = self.bound is None or self.least_places + more <= self.bound
             if room and not due and self._makes_place(out, step):
                 arrivals.append(step * self.slots)
         if step not in self.lying and not self.evidence:
             return arrivals
         return self.allowed(arrivals)
+
+    def _exceeds(self, kind: int) -> bool:
+        """Whether one more place of a kind is more than each map needs."""
+        return self.places_of[kind] >= self.future.needed[kind]
+
+    def _count_place(self, place: int, many: int) -> None:
+        """Count a place that was made (1), or is taken back (-1)."""
+        kind = self.future.place_kind[place]
+        before = max(self.places_of[kind], self.future.needed[kind])
+        self.places_of[kind] += many
+        self.least_places += max(self.places_of[kind], self.future.needed[kind]) - before
 
     def _known(self, out: int, step: int) -> list[int]:
         """The other end of a link, if the next step can arrive there and what is pending can wait
@@ -158,34 +177,82 @@ class LookAhead(Hypothesis):
         super().enter(arrival)
         step, link = self.steps, self._trail[-1]
         place, slot = divmod(arrival, self.slots)
-        possible = self.possible_at.get(place)
         changed: dict[int, int] = {}
-        self._before.append(_Before(place, possible, changed, self.in_time))
-        here = self.future.possible_visits(step, slot)
-        narrowed = here if possible is None else possible & here
-        self.possible_at[place] = narrowed
+        self._before.append(_Before(place, {}, changed, self.in_time))
         if place == step:
             self.path_ends += self.dead_ends[place]
+            self._count_place(place, 1)
         if link is not None and self._counted:
             if place == step:
                 for gateway in self.stars[place]:
                     self.pending[self.views[gateway]] += 1
             self.pending[self.views[link.out]] -= 1
             self.pending[self.views[arrival]] -= 1
-        if not self._closed:
-            return
-        if link is not None:
+        if link is not None and self._closed:
             if place != step:
                 changed[arrival] = self.linked_by.pop(arrival)
             changed[link.out] = self.linked_by.pop(link.out)
             self._enter_faces()
-        if narrowed != possible:
-            linked_by = self.linked_by
+        self._narrow(place, slot)
+
+    def _narrow(self, place: int, slot: int) -> bool:
+        """Take in that the last visit is at this place. Returns whether less can be there now."""
+        possible = self.possible_at.get(place)
+        here = self.future.possible_visits(self.steps, slot)
+        narrowed = here if possible is None else possible & here
+        if narrowed == possible:
+            return False
+        before, linked_by = self._before[-1], self.linked_by
+        if possible is not None:
+            before.possible.setdefault(place, possible)
+        self.possible_at[place] = narrowed
+        if self._closed:
             for gateway in self.stars[place]:
                 if gateway not in self.links:
                     if gateway in linked_by:
-                        changed[gateway] = linked_by[gateway]
+                        before.linked_by.setdefault(gateway, linked_by[gateway])
                     linked_by[gateway] = self.future.last_at(gateway, narrowed)
+        return True
+
+    def run(self) -> bool:
+        """Go on over known links, as far as this goes fast; False if there can be no map below.
+        What is gone is undone together with the last step that was entered."""
+        if self.evidence or not self._before:
+            return True
+        slots, at, links, views = self.slots, self.at, self.links, self.views
+        turns, seen, lying = self.future.turns, self.future.arrival, self.lying
+        paired = self.future.paired
+        begun, last, until = self.steps, self.experience.steps, self._until()
+        gateway, alive = at[-1], True
+        for step in range(begun + 1, last + 1):
+            out = gateway - gateway % slots + (gateway + turns[step]) % slots
+            if out not in links or step in lying:
+                break
+            gateway = links[out]
+            if views[gateway] != seen[step] or step > until:
+                alive = False
+                break
+            if step <= paired:
+                place, slot = divmod(gateway, slots)
+                if not self.possible_at[place] >> (step * slots + slot) & 1:
+                    alive = False
+                    break
+                self.steps = step
+                if self._narrow(place, slot):
+                    until = self._until()
+            at.append(gateway)
+        self.steps = len(at) - 1
+        self._before[-1] = self._before[-1]._replace(ran=self.steps - begun)
+        return alive
+
+    def _until(self) -> int:
+        """The last step up to which known links can be gone, because what is pending can wait so
+        long."""
+        last = self.experience.steps
+        if not self._closed:
+            return last
+        kinds = (self.future.last(kind, n) for kind, n in enumerate(self.pending) if n)
+        return min(last, self.in_time, *self.linked_by.values(), *kinds)
 
     def _enter_faces(self) -> None:
         if self.planar:
@@ -194,16 +261,19 @@ class LookAhead(Hypothesis):
             self.in_time = min(in_time, default=self.experience.steps)
 
     def undo(self) -> None:
-        """Go one step back."""
+        """Go one step back, and before it all those that were run after it."""
+        before = self._before.pop()
+        if before.ran:
+            del self.at[-before.ran :]
+            self.steps -= before.ran
         step, link, arrival = self.steps, self._trail[-1], self.at[-1]
         super().undo()
-        before = self._before.pop()
         place = before.place
+        self.possible_at.update(before.possible)
         if place == step:
             del self.possible_at[place]
             self.path_ends -= self.dead_ends[place]
-        elif before.possible is not None:
-            self.possible_at[place] = before.possible
+            self._count_place(place, -1)
         if link is not None and self._counted:
             self.pending[self.views[link.out]] += 1
             self.pending[self.views[arrival]] += 1
@@ -212,10 +282,10 @@ class LookAhead(Hypothesis):
                     self.pending[self.views[gateway]] -= 1
         if not self._closed:
             return
-        if link is not None and place == step:
+        self.linked_by.update(before.linked_by)
+        if place == step:
             for gateway in self.stars[place]:
                 self.linked_by.pop(gateway, None)
-        self.linked_by.update(before.linked_by)
         self.in_time = before.in_time
 
     def least(self) -> tuple[int, int]:
@@ -229,4 +299,4 @@ class LookAhead(Hypothesis):
             for kind, many in enumerate(self.pending):
                 if many:
                     ends += max(0, many - left(kind, step))
-        return (ends + 1) // 2, self.places
+        return (ends + 1) // 2, self.least_places

@@ -117,8 +117,9 @@ class Trial:
         if self._committed:
             return
         nodes, worth, size = descent.nodes, self._worth(descent), 0.0
-        if nodes == self._next:
-            self._next *= 2
+        if nodes >= self._next:
+            while self._next <= nodes:
+                self._next *= 2
             # Before the first end of a branch nothing can be told of the others.
             if descent.passed and not self._query.optimizes:
                 size = descent.size
