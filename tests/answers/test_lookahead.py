@@ -73,9 +73,9 @@ def test_the_best_maps_are_those_of_the_plain_tree(seed, monkeypatch):
     greedy = Counter()
     greedily = Descent._greedily
 
-    def counted(self):
+    def counted(self, begun):
         greedy["begun"] += 1
-        for found in greedily(self):
+        for found in greedily(self, begun):
             greedy["better"] += 1
             yield found
 
@@ -113,13 +113,27 @@ def test_undoing_leaves_what_was_before():
             node.goto(at)
             node.goto(((0, 0),))
             assert _state(node) == known
+            _run_along(node, [place * node.slots + slot for place, slot in at])
+            assert _state(node) == known
+
+
+def _run_along(node, at):
+    """Go to a map by runs over known links, as far as its beginning allows a closed one, and back by
+    undoing as many decisions."""
+    decisions, alive = 0, True
+    while alive and node.steps < len(at) - 1:
+        node.enter(at[node.steps + 1])
+        alive = node.run()
+        decisions += 1
+        assert node.at == at[: node.steps + 1]
+    for _ in range(decisions):
+        node.undo()
 
 
 def _state(node):
     names = ("at", "links", "faces", "paths", "meets", "possible_at", "linked_by", "pending")
-    state = {
-        name: getattr(node, name) for name in (*names, "path_ends", "in_time", "places", "matches")
-    }
+    numbers = ("steps", "path_ends", "in_time", "places", "matches", "places_of", "least_places")
+    state = {name: getattr(node, name) for name in (*names, *numbers)}
     return {name: copy(value) for name, value in state.items()}
 
 

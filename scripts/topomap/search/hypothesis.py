@@ -48,7 +48,8 @@ class Hypothesis:
     ``links`` joins gateways, both ways. ``faces`` holds of each face the pending gateways,
     in the order of its walk (the paper, section III.B): a link inside a face splits it; one
     between two faces, which planarity forbids, makes them one. ``paths`` holds of each path
-    the set of its places, as bits; ``meets`` the set of the paths that it shares a place with.
+    the set of its places, as bits; ``meets`` the set of the paths that it shares a place with, where
+    that is asked for.
 
     With ``planar``, ``bound`` and ``perpendicular``, children that break these are dropped. Without
     the ``path_axiom`` a path may come back to a place of its own, and may be circular;
@@ -66,6 +67,7 @@ class Hypothesis:
         self.experience, self.slots = experience, experience.slots
         self.planar, self.bound, self.perpendicular = planar, bound, perpendicular
         self.path_axiom = path_axiom
+        self._crosses = perpendicular  # whether ``meets`` is kept
         self.stars: list[Face] = []  # of the place that a step makes, counter-clockwise
         self.views: dict[int, int] = {}  # of each gateway, the number of what is seen from it
         numbers: dict[Any, int] = {}
@@ -449,18 +451,17 @@ class Hypothesis:
         self._joined[other] = path
         self.paths[path] = places | more
         both = (1 << path) | (1 << other)
-        self.meets[path] = (meets | met) & ~both
-        self._cross(path, other, meets & ~both, met & ~both)
+        if self._crosses:
+            self.meets[path] = (meets | met) & ~both
+            self._cross(path, other, meets & ~both, met & ~both)
         return Link(out, arrival, path, other, faces, places, more, meets, met, merged)
 
     def _cross(self, path: int, other: int, meets: int, met: int) -> None:
         """Of the paths that meet two others, ``meets`` the one and ``met`` the other, say that they
         meet the one that these become; or take that back."""
         both = (1 << path) | (1 << other)
-        for crossing in numbers(met & ~meets):
-            self.meets[crossing] ^= both
-        for crossing in numbers(met & meets):
-            self.meets[crossing] ^= 1 << other
+        for crossing in numbers(met):
+            self.meets[crossing] ^= both & ~(meets >> crossing & 1 and 1 << path)
 
     def undo(self) -> None:
         """Go one step back."""
@@ -485,9 +486,10 @@ class Hypothesis:
             del self._joined[link.other]
             self.paths[link.path], self.paths[link.other] = link.path_places, link.other_places
             self.meets[link.path], self.meets[link.other] = link.path_meets, link.other_meets
-            both = (1 << link.path) | (1 << link.other)
-            meets, met = link.path_meets & ~both, link.other_meets & ~both
-            self._cross(link.path, link.other, meets, met)
+            if self._crosses:
+                both = (1 << link.path) | (1 << link.other)
+                meets, met = link.path_meets & ~both, link.other_meets & ~both
+                self._cross(link.path, link.other, meets, met)
         self.faces = link.faces
         if arrival // self.slots == step:
             self._remove_place(step)

@@ -40,6 +40,7 @@ class LookAhead(Hypothesis):
         planar = bool(parts & {"planar", "euler"})
         super().__init__(experience, planar, query.places, "perpendicular" in parts)
         self._meets_once = "boundary" in parts  # two paths that meet twice break the boundaries
+        self._crosses |= self._meets_once
         self._closed = "closed" in parts
         self.future = Future(experience, self.views)
         self.possible_at = {0: self.future.possible_visits(0, 0)}
@@ -123,13 +124,13 @@ class LookAhead(Hypothesis):
         future, slots, views, last = self.future, self.slots, self.views, self.future.last_of_face
         seen, possible_at = future.arrival[step], self.possible_at
         faces = (self.face(out),) if self.planar else self.faces
-        path, arrivals = self.path(out), []
+        path, arrivals, paired = self.path(out), [], step <= future.paired
         for face in faces:
             for gateway in face:
                 if views[gateway] != seen or gateway == out:
                     continue
                 place, slot = divmod(gateway, slots)
-                if not possible_at[place] >> (step * slots + slot) & 1:
+                if paired and not possible_at[place] >> (step * slots + slot) & 1:
                     continue
                 if not self._joins(path, self.path(gateway)):
                     continue
@@ -217,12 +218,12 @@ class LookAhead(Hypothesis):
     def run(self) -> bool:
         """Go on over known links, as far as this goes fast; False if there can be no map below.
         What is gone is undone together with the last step that was entered."""
-        if self.evidence or not self._before:
+        begun, last = self.steps, self.experience.steps
+        if begun == last or self.evidence or not self._before or self.out() not in self.links:
             return True
         slots, at, links, views = self.slots, self.at, self.links, self.views
         turns, seen, lying = self.future.turns, self.future.arrival, self.lying
-        paired = self.future.paired
-        begun, last, until = self.steps, self.experience.steps, self._until()
+        paired, until = self.future.paired, self._until()
         gateway, alive = at[-1], True
         for step in range(begun + 1, last + 1):
             out = gateway - gateway % slots + (gateway + turns[step]) % slots
@@ -242,7 +243,8 @@ class LookAhead(Hypothesis):
                     until = self._until()
             at.append(gateway)
         self.steps = len(at) - 1
-        self._before[-1] = self._before[-1]._replace(ran=self.steps - begun)
+        if self.steps > begun:
+            self._before[-1] = self._before[-1]._replace(ran=self.steps - begun)
         return alive
 
     def _until(self) -> int:
