@@ -13,12 +13,14 @@ from topomap.model.experience import Experience
 from topomap.model.query import Query
 from topomap.runtime.watch import Watch
 from topomap.search import descent, traversal
+from topomap.search import future as of_steps
 from topomap.search.descent import Descent, TooLarge, holds
 from topomap.search.future import Future
 from topomap.search.hypothesis import Hypothesis
 from topomap.search.lookahead import LookAhead
 from topomap.worlds.environment import grid
 from topomap.worlds.instance import instance
+from topomap.worlds.senses import Senses
 
 QUERIES = (
     *([], ["planar"], ["closed"], ["boundary"], ["perpendicular"], ["euler", "closed"]),
@@ -40,6 +42,41 @@ def plain(experience, query):
         if node.steps == experience.steps and holds(node, query.parts):
             maps.append((node.dstates, node.cost))
     return nodes, maps
+
+
+@pytest.fixture
+def few_pairs(monkeypatch):
+    """As of a long exploration, pairs of visits are looked at of the beginning only."""
+    monkeypatch.setattr(of_steps, "MOST_PAIRS", 8)
+    of_steps.future_of.cache_clear()
+    yield
+    of_steps.future_of.cache_clear()
+
+
+@pytest.mark.parametrize("seed", range(2))
+def test_of_a_beginning_alone_nothing_more_is_left_out(seed, few_pairs):
+    """The same as the next one, where only the pairs of a beginning are looked at."""
+    test_what_is_left_out_is_in_no_answer(f"few {seed}")
+
+
+def test_long_walks_have_the_maps_of_the_plain_tree(few_pairs):
+    """Walks of 300 steps through small worlds, of which most are over known links."""
+    maps = 0
+    for seed, signs, compass in ((0, 0, False), (1, 0, True), (2, 0.3, False), (3, 0.3, True)):
+        for rows, parts in ((2, []), (2, ["closed"]), (3, ["planar"]), (3, ["perpendicular"])):
+            world = grid(rows, 3)
+            walk = instance(
+                world, "walk", steps=300, seed=seed, signs=signs, senses=Senses(compass=compass)
+            )
+            query = Query(frozenset(parts), 3 * rows)
+            nodes, expected = plain(walk.experience, query)
+            search = Descent(walk.experience, query)
+            found = [one.at for one in search.found()]
+            assert found == [at for at, _ in expected]
+            assert walk.truth in found or "closed" in parts
+            assert search.nodes < nodes
+            maps += len(found)
+    assert maps > 16
 
 
 @pytest.mark.parametrize("seed", range(4))
@@ -64,22 +101,32 @@ def test_what_is_left_out_is_in_no_answer(seed):
     assert cut < 0.7 * whole
 
 
+@pytest.mark.parametrize("large", [False, True])
 @pytest.mark.parametrize("seed", range(2))
-def test_the_best_maps_are_those_of_the_plain_tree(seed, monkeypatch):
+def test_the_best_maps_are_those_of_the_plain_tree(seed, large, monkeypatch):
     """And no map below a node costs less than the node says, at each node on the way to a map.
-    The search is greedy for a while from its fourth node on."""
+    From its fourth node on, the search looks for good maps elsewhere: greedily, or, as if its tree
+    were too large to be searched, for maps of few places."""
     monkeypatch.setattr(descent, "OFTEN", 4)
     monkeypatch.setattr(descent, "GREEDY_AFTER", 4)
-    greedy = Counter()
-    greedily = Descent._greedily
+    monkeypatch.setattr(descent, "MANY_PAIRS", -1 if large else 5_000)
+    monkeypatch.setattr(descent, "DEEPEN_LONG", 20)
+    elsewhere = Counter()
 
-    def counted(self, begun):
-        greedy["begun"] += 1
-        for found in greedily(self, begun):
-            greedy["better"] += 1
-            yield found
+    def counted(name):
+        method = getattr(Descent, name)
 
-    monkeypatch.setattr(Descent, "_greedily", counted)
+        def made(self, *arguments):
+            elsewhere[name, "begun"] += 1
+            for found in method(self, *arguments):
+                elsewhere[name, "found"] += 1
+                assert not found.proved
+                yield found
+
+        monkeypatch.setattr(Descent, name, made)
+
+    for name in ("_greedily", "_deepen", "_open_ones"):
+        counted(name)
     checked = 0
     for number in range(120):
         draw = random.Random(f"best {seed} {number}")
@@ -100,7 +147,9 @@ def test_the_best_maps_are_those_of_the_plain_tree(seed, monkeypatch):
                     checked += 1
                 assert node.least() == node.cost == cost
     assert checked > 3_000
-    assert min(greedy["begun"], greedy["better"]) > 20
+    used = "_deepen" if large else "_greedily"
+    assert min(elsewhere[used, what] for what in ("begun", "found")) > 100
+    assert min(elsewhere["_open_ones", what] for what in ("begun", "found")) > 3
 
 
 def test_undoing_leaves_what_was_before():
@@ -118,8 +167,8 @@ def test_undoing_leaves_what_was_before():
 
 
 def _run_along(node, at):
-    """Go to a map by runs over known links, as far as its beginning allows a closed one, and back by
-    undoing as many decisions."""
+    """Go to a map by runs over known links, as far as its beginning allows a closed one, and back
+    by undoing as many decisions."""
     decisions, alive = 0, True
     while alive and node.steps < len(at) - 1:
         node.enter(at[node.steps + 1])
@@ -242,7 +291,7 @@ def test_a_search_ends_when_it_is_told_to():
     search = Descent(tour(5, 5), Query(frozenset(["closed", "planar"])), heed=heed)
     with pytest.raises(TooLarge):
         list(search.found())
-    assert search.nodes == 1_000
+    assert 1_000 <= search.nodes < 1_100
 
 
 def test_a_walk_of_240_steps_gives_the_true_map_soon():

@@ -7,7 +7,8 @@ from topomap.model.experience import DState, Misread
 from topomap.model.topology import Gateway
 
 Cube = tuple[DState, ...]  # the first dstates of a hypothesis
-BEST = ("optimal", "best so far")  # the kinds that are asked for as optimal
+OPEN = "best so far"  # the kind of the best maps where no map is closed
+BEST = ("optimal", OPEN)  # the kinds that are asked for as optimal
 UNPROVED = "not proved to be best"  # the kind of a map of which it is open whether it is
 
 

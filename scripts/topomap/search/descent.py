@@ -5,7 +5,7 @@ from collections.abc import Callable, Collection, Iterator, Sequence
 from dataclasses import replace
 
 from topomap.model.experience import Experience
-from topomap.model.found import Cube, Found
+from topomap.model.found import OPEN, Cube, Found
 from topomap.model.query import Query
 from topomap.runtime.watch import Stopped, Watch, spared
 from topomap.search.hypothesis import OFTEN, Hypothesis
@@ -13,6 +13,11 @@ from topomap.search.lookahead import LookAhead
 
 # After GREEDY_AFTER nodes, a search that minimises visits at most GREEDY nodes best first.
 GREEDY_AFTER, GREEDY = 4_000, 10_000
+# While it has found no map even so, it looks for one of few places (``_deepen``), and visits up to
+# DEEPEN nodes for each one of its own; first then, and again whenever its nodes have doubled. Where
+# more than MANY_PAIRS pairs of visits can be of one place, and any number of places is allowed, the
+# tree is too large to be searched: this is then done from the beginning on, with DEEPEN_LONG nodes.
+DEEPEN, DEEPEN_LONG, MANY_PAIRS = 4, 500, 5_000
 Cost = tuple[int, ...]
 
 
@@ -58,7 +63,7 @@ class Descent:
     ):
         if query.horizon is not None:
             experience = experience.cut(query.horizon)
-        self.query = query
+        self.query, self._experience = query, experience
         unforeseen = experience.parted or experience.tolerance or "no_path_axiom" in query.parts
         self.node = Unforeseen(experience, query) if unforeseen else LookAhead(experience, query)
         self.nodes = self.maps = 0
@@ -70,6 +75,11 @@ class Descent:
         self._worst: Cost | None = None  # what they cost: no map is wanted that costs more
         # Of each node on the way to the one where the search stands: its children that are to be
         # visited, the share of the tree below each, and what a map below them costs at least.
+        self._deepened: int | None = (
+            None  # so many places the maps have at least that are not found
+        )
+        self._fewest: int | None = None  # places of a map that is found
+        self._flat = True  # whether planar ones are sought
         self._decided: list[int] = []  # where these nodes arrived
         self._way: list[tuple[list[int], float, Cost]] = []
 
@@ -78,6 +88,11 @@ class Descent:
         """How many pairs of visits can be of one place, so far as pairs tell; None of very many,
         and where that is not foretold."""
         return self.node.future.pairs if isinstance(self.node, LookAhead) else None
+
+    @property
+    def _large(self) -> bool:
+        """Whether the tree is too large to be searched."""
+        return self.query.places is None and (self.pairs is None or self.pairs > MANY_PAIRS)
 
     @property
     def size(self) -> float:
@@ -133,7 +148,9 @@ class Descent:
         way.append(self._open(1.0))
         begun, decided = tuple(node.at), self._decided
         decided.clear()
-        look, greedy = self.nodes - self.nodes % OFTEN + OFTEN, minimises
+        look = self.nodes - self.nodes % OFTEN + OFTEN
+        after = OFTEN if self._large else GREEDY_AFTER
+        again = after
         while way:
             children, share, _ = way[-1]
             if not children:
@@ -152,9 +169,9 @@ class Descent:
                     self._watch.tick()
                 if self._heed:
                     self._heed(self)
-                if self.nodes >= GREEDY_AFTER and greedy:
-                    greedy = False
-                    yield from self._greedily(begun)
+                if self.nodes >= again and minimises:
+                    yield from self._for_a_while(begun, again == after)
+                    again = 2 * max(again, self.nodes)
             if not alive:
                 pass
             elif node.steps == steps:
@@ -172,6 +189,17 @@ class Descent:
         """Go on to a child, and over known links; False if there can be no map below."""
         self.node.enter(arrival)
         return self.node.run()
+
+    def _for_a_while(self, begun: Sequence[int], first: bool) -> Iterator[Found]:
+        """Look for good maps elsewhere in the tree, which cut it; ``first`` is whether that was not
+        done before. Afterwards the search stands where it stood, below the node ``begun``."""
+        large = self._large
+        if first and not large:
+            yield from self._greedily(begun)
+        if self._worst is None and first and "closed" in self.query.parts:
+            yield from self._open_ones()
+        if self._worst is None or large:
+            yield from self._deepen(begun, (DEEPEN_LONG if large else DEEPEN) * self.nodes)
 
     def _greedily(self, begun: Sequence[int]) -> Iterator[Found]:
         """Best-first search by the paper's policy (section IV): the node whose map costs least so
@@ -206,6 +234,71 @@ class Descent:
         node.go(begun[:1])
         node.go(begun)
         self._go((), self._decided)
+
+    def _open_ones(self) -> Iterator[Found]:
+        """While no closed map is found: the best map that need not be closed, as far as it is soon
+        found. It is not proved to be best, as there may be a closed one."""
+
+        def heed(descent: "Descent") -> None:
+            if descent.nodes > (0 if self._large else GREEDY_AFTER) + OFTEN:
+                raise TooLarge
+
+        query = replace(self.query, parts=self.query.parts - {"closed"})
+        try:
+            for found in Descent(self._experience, query, OPEN, heed).found(self._watch):
+                if found:
+                    yield replace(found, proved=False)
+        except TooLarge:
+            pass
+
+    def _deepen(self, begun: Sequence[int], most: int) -> Iterator[Found]:
+        """Depth-first search for a map of as few places as there can be, then of one more, and so
+        on, until no map of fewer places is known or ``most`` nodes were visited: the fewer places
+        there may be, the smaller is the tree. If the genus is minimised, planar maps are sought in
+        every other search. Afterwards the search stands where it stood, below ``begun``."""
+        node = self.node
+        if not isinstance(node, LookAhead):
+            return
+        steps, planar, bound = node.experience.steps, node.planar, node.bound
+        node.go(begun[:1])
+        if self._deepened is None:
+            self._deepened = node.least_places
+        elif "genus" in self.query.parts:
+            self._flat = not self._flat
+        node.planar = planar or ("genus" in self.query.parts and self._flat)
+        nodes = 0
+        try:
+            while nodes < most and self._deepened <= self._places(bound):
+                node.bound, way = self._deepened, [node.children()[::-1]]
+                while way and nodes < most and self._deepened <= self._places(bound):
+                    if not way[-1]:
+                        way.pop()
+                        if way:
+                            node.undo()
+                        continue
+                    nodes += 1
+                    if self._watch and nodes % OFTEN == 0:
+                        self._watch.tick()
+                    alive = self._enter(way[-1].pop())
+                    alive = alive and (self._worst is None or self._cost() <= self._worst)
+                    if alive and node.steps < steps:
+                        way.append(node.children()[::-1])
+                        continue
+                    if alive:
+                        yield from self._here()
+                    node.undo()
+                self._deepened += not way
+                for _ in way[1:]:
+                    node.undo()
+        finally:
+            node.planar, node.bound = planar, bound
+        node.go(begun)
+        self._go((), self._decided)
+
+    def _places(self, bound: int | None) -> int:
+        """How many places a map that is worth looking for has at most."""
+        most = self.node.experience.steps + 1 if bound is None else bound
+        return most if self._fewest is None else min(most, self._fewest - 1)
 
     def _go(self, here: Sequence[int], decided: Sequence[int]) -> None:
         """Go from one node to another one; each is known by its decisions."""
@@ -248,6 +341,7 @@ class Descent:
         if not holds(self.node, self.query.parts):
             return
         self.maps += 1
+        self._fewest = min(self._fewest or self.node.places, self.node.places)
         if self._watch:
             self._watch.found += 1
         one = Found(self.node.dstates, self._kind, cost, not self.query.optimizes)

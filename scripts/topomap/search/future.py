@@ -22,9 +22,9 @@ MOST_PAIRS = 100_000  # of visits that look alike: pairs of later visits are not
 
 
 @lru_cache(maxsize=4)
-def number_of_pairs(experience: Experience) -> int | None:
-    """How many pairs of visits can be of one place, so far as pairs tell; None of very many."""
-    return Future(experience, Hypothesis(experience).views).pairs
+def future_of(experience: Experience) -> "Future":
+    """The future of an exploration, each step of which is a travel."""
+    return Future(experience, Hypothesis(experience).views)
 
 
 class Future:
@@ -63,8 +63,7 @@ class Future:
         self.kinds_of: list[list[tuple[int, int]]] = []
         self.place_by: list[int] = []
         self._in_time: dict[tuple[int, ...], int] = {}
-        # The last of the visits whose pairs are looked at: of a long exploration these are visits of
-        # its beginning.
+        # The last of the visits whose pairs are looked at: those of the beginning, if it is long.
         self.paired = 0
         pairs = self._pairs()
         self.pairs = len(pairs) if self.paired == experience.steps else None

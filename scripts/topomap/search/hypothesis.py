@@ -48,7 +48,7 @@ class Hypothesis:
     ``links`` joins gateways, both ways. ``faces`` holds of each face the pending gateways,
     in the order of its walk (the paper, section III.B): a link inside a face splits it; one
     between two faces, which planarity forbids, makes them one. ``paths`` holds of each path
-    the set of its places, as bits; ``meets`` the set of the paths that it shares a place with, where
+    the set of its places, as bits; ``meets`` the set of the paths that it shares a place with, if
     that is asked for.
 
     With ``planar``, ``bound`` and ``perpendicular``, children that break these are dropped. Without

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 from topomap.model.experience import Experience
 from topomap.model.query import Query
-from topomap.search.future import Future
+from topomap.search.future import future_of
 from topomap.search.hypothesis import Hypothesis, after
 
 
@@ -42,7 +42,7 @@ class LookAhead(Hypothesis):
         self._meets_once = "boundary" in parts  # two paths that meet twice break the boundaries
         self._crosses |= self._meets_once
         self._closed = "closed" in parts
-        self.future = Future(experience, self.views)
+        self.future = future_of(experience)
         self.possible_at = {0: self.future.possible_visits(0, 0)}
         self._counted = self._closed or "minimal" in parts
         self.linked_by: dict[int, int] = {}

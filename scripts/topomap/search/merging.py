@@ -17,7 +17,7 @@ from topomap.model.experience import Experience
 from topomap.model.query import Query
 from topomap.runtime.errors import InputError
 from topomap.runtime.watch import Watch
-from topomap.search.future import Future
+from topomap.search.future import future_of
 from topomap.search.hypothesis import OFTEN, Hypothesis, numbers
 
 Key = tuple[Any, ...]
@@ -85,7 +85,7 @@ class Merging:
         self.perpendicular = "perpendicular" in query.parts
         self.bound = query.places
         whole = Hypothesis(experience)
-        self.future = Future(experience, whole.views)
+        self.future = future_of(experience)
         self.kinds, self.stars, self._axes = whole.views, whole.stars, whole.axes
         self.largest = 0  # states at one step
         self._visits_at: dict[int, int] = {}

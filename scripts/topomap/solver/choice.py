@@ -11,7 +11,7 @@ from topomap.model.experience import Experience
 from topomap.model.found import Found
 from topomap.model.query import Query
 from topomap.runtime.watch import Stopped, Watch
-from topomap.search.descent import Descent, TooLarge
+from topomap.search.descent import MANY_PAIRS, Descent, TooLarge
 from topomap.search.hypothesis import OFTEN
 from topomap.solver import phases, solving
 
@@ -19,7 +19,7 @@ from topomap.solver import phases, solving
 # because the ground program grows with these pairs, but at most FEW in all: that takes as long as
 # clingo takes for some 100,000 rules. With more than MANY_PAIRS pairs the program could hardly be
 # grounded, unless that is done in phases.
-NODES_A_PAIR, FEW, MANY_PAIRS = 150, 75_000, 5_000
+NODES_A_PAIR, FEW = 150, 75_000
 # A query that minimises, and allows pending gateways, is harder for clingo: there are maps of
 # any cost.
 FEW_OPEN = 250_000
@@ -157,7 +157,8 @@ def hypotheses(
     if trial.fault:
         raise Stopped(trial.fault)
     for found in solving.hypotheses(experience, query, watch, kind):
-        if not found or found.proved or not best or found.cost < best[0].cost:
+        better = not best or (found and (found.kind != best[0].kind or found.cost < best[0].cost))
+        if not found or found.proved or better:
             watch.by, watch.least = CLINGO, trial.least
             yield found
     watch.by = CLINGO

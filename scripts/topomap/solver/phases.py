@@ -31,7 +31,7 @@ import clingo
 from clingo import Function, Number, Symbol
 
 from topomap.model.experience import Experience
-from topomap.search.future import number_of_pairs
+from topomap.search.future import future_of
 from topomap.solver.plane import Planarity
 
 if TYPE_CHECKING:
@@ -71,7 +71,7 @@ def _square(experience: Experience, query: "Query") -> bool:
 def _large(experience: Experience, query: "Query") -> bool:
     """Whether the ground program is large. It grows with the pairs of visits that can be of one
     place (of very many visits, these are not counted)."""
-    pairs = number_of_pairs(experience if query.horizon is None else experience.cut(query.horizon))
+    pairs = future_of(experience if query.horizon is None else experience.cut(query.horizon)).pairs
     return pairs is None or pairs >= LEAST
 
 

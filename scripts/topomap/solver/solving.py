@@ -9,7 +9,7 @@ from operator import itemgetter
 import clingo
 
 from topomap.model.experience import Experience, Misread
-from topomap.model.found import Cube, Found
+from topomap.model.found import OPEN, Cube, Found
 from topomap.model.query import Query
 from topomap.model.vocabulary import CHOSEN
 from topomap.runtime.folders import ENCODINGS
@@ -108,7 +108,7 @@ def best(
             return
         least = cheapest.cost[:2]
         query = replace(query, noise=least[0])
-    for kind, closed in (("optimal", ("closed",)), ("best so far", ())):
+    for kind, closed in (("optimal", ("closed",)), (OPEN, ())):
         for preferred, before in preferences(query):
             some = False
             asked = query.having(*closed, preferred, "minimal")
