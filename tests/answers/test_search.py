@@ -264,12 +264,16 @@ def test_the_committed_report_is_what_is_counted(most):
     """The smaller columns of docs/beyond.json, counted again; of the long ones, 4x4 without a
     bound is the column that the paper could not finish."""
     rows = json.loads((ROOT / "docs/beyond.json").read_text())["rows"]
-    assert [(r["environment"], r["places"], r["planarity"]) for r in rows] == sorted(
+    told = {way: [row for row in rows if (row["way"] == "merging") is way] for way in (True, False)}
+    assert [(r["environment"], r["places"], r["planarity"]) for r in told[False]] == sorted(
         (f"{height}x{width}", places, planar) for height, width, places, planar in beyond.COLUMNS
     )
-    for row in rows:
+    assert [row["environment"] for row in told[True]] == [f"{n}x{m}" for n, m in beyond.MERGED]
+    for row in told[False]:
         assert row["nodes"] == sum(row["per_step"])
         assert row["clingo"] in ({}, {"final": row["final"]})
+        assert bool(row["merging"]) is not row["planarity"]
+        assert row["merging"].items() <= row.items()
         if row["nodes"] < most:
             counted = counted_again(row)
             assert {**row, **counted} == row

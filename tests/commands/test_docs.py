@@ -227,7 +227,8 @@ def test_the_pages_show_the_committed_reports():
     text = evidence()
     beyond = json.loads((ROOT / "docs/beyond.json").read_text())["rows"]
     assert f"```text\n{figure4.table_text(beyond)}\n```" in text
-    assert [row["environment"] for row in beyond if not row["clingo"]] == ["5x5"]
+    alone = [row["environment"] for row in beyond if not row["clingo"]]
+    assert alone == ["4x5", "5x4", "5x5"]  # the first two are counted by merging
     assert not any(map(figure4.differences, beyond))
     (total,) = re.findall(r"^\| all \|(.*)\|$", (ROOT / "docs/mutation.md").read_text(), re.M)
     figures = [int(number) for number in re.findall(r"\d+", total)]

@@ -12,7 +12,6 @@ from topomap.paper import statistics
 from topomap.runtime.checks import flag, whole
 from topomap.runtime.journal import Journal
 from topomap.runtime.watch import Attempt, Watch
-from topomap.search.merging import Merging
 from topomap.solver.crews import crew as crew_of
 from topomap.solver.share import Crew
 
@@ -86,8 +85,9 @@ def count(
         horizon: the last step that counts.
         circumscribe: count the circumscribed maps, too, as ``solve`` gives them: the figure
             ``circumscribed``, and ``circumscribed_kind``, which says of what kind they are.
-        merging: count by merging: the hypotheses after each step, the closed maps, and those that
-            are perpendicular, too. The other figures are None.
+        merging: count by merging, all final maps, those that are closed, and those that are
+            perpendicular, too: ``final``, ``closed_text`` and ``perpendicular``. The other figures
+            are None, and ``per_step`` is empty.
         timeout: seconds after which it stops.
         jobs: how many processes do the work.
         parts: what the maps are to have; not genus and minimal.
@@ -115,18 +115,12 @@ def count(
 
 
 def merged_under(watch: Watch, experience: Experience, query: Query) -> Counts:
-    """The hypotheses after each step, and how many of the maps are closed, by merging; under the
-    watch of a command. What is soonest found comes first."""
-    figures: dict[str, Any] = {"per_step": [], **dict.fromkeys(statistics.KEYS)}
-    asked = {"perpendicular": ("closed", "perpendicular"), "closed_text": ("closed",)}
+    """How many maps there are, and how many of them are closed, by merging; under the watch of a
+    command. What is soonest found comes first."""
+    figures: dict[str, Any] = {**dict.fromkeys(statistics.KEYS), "per_step": []}
     with Attempt() as attempt:
-        for key, parts in asked.items():
-            watch.title(f"{key} maps")
-            *_, figures[key] = Merging(experience, query.having(*parts)).counts(watch)
-        watch.title("hypotheses")
-        for many in Merging(experience, query).counts(watch):
-            figures["per_step"].append(many)
-        figures.update(nodes=sum(figures["per_step"]), final=figures["per_step"][-1])
+        for key, number in statistics.merged(experience, query, watch):
+            figures[key] = number
     return Counts(figures, attempt.fault)
 
 

@@ -60,8 +60,8 @@ def table_beyond_under(
     """Count larger grids by so many processes, and write the table to a file as JSON, under the
     watch of a command. A journal beside the file tells what is done, to ``resume`` it."""
     rows: list[Row] = []
-    many = len(beyond.COLUMNS)
-    run = {"command": "beyond", "columns": beyond.COLUMNS}
+    many = len(beyond.COLUMNS) + len(beyond.MERGED)
+    run = {"command": "beyond", "columns": [beyond.COLUMNS, beyond.MERGED]}
     with (
         Attempt() as attempt,
         output(path, parents=True) as file,
@@ -82,7 +82,7 @@ def _take(counted: Iterator[Row], rows: list[Row], many: int, noted: Noted) -> N
     """Take in the columns as they are counted, and keep them in order."""
     for row in counted:
         rows.append(row)
-        rows.sort(key=lambda row: (row["environment"], row["planarity"]))
+        rows.sort(key=lambda row: (row["environment"], row["planarity"], row["way"] == "merging"))
         noted(len(rows), many)
 
 

@@ -38,7 +38,7 @@ def add(group: Any) -> None:
         "--merging",
         action="store_true",
         help="count by merging hypotheses that have the same future, for what is too much to be "
-        "listed: how many there are, are closed, and are closed and perpendicular",
+        "listed: how many maps there are, are closed, and are closed and perpendicular",
     )
     add_crew(made)
     add_resume(made)

@@ -1,18 +1,23 @@
 """Beyond the paper's table: larger grids, and 4x4 without a bound, by depth-first search. The
-last level of the tree is counted by clingo too, where that ends in time."""
+last level of the tree is counted by clingo too, where that ends in time, and by merging hypotheses
+that have the same future, unless maps are to be planar. Where there are too many maps for a search,
+merging alone counts them."""
 
 from collections.abc import Iterator
 from typing import Any
 
 from topomap.model.query import Query
-from topomap.paper.statistics import final_maps, searched
+from topomap.paper.statistics import KEYS, final_maps, merged, searched
 from topomap.runtime.journal import Journal
 from topomap.runtime.watch import Stopped, Watch
 from topomap.solver.share import Crew
 from topomap.worlds.environment import grid
 from topomap.worlds.instance import Instance, instance
 
-VERDICT = "Counted by depth-first search, the final maps by clingo too where it finished."
+VERDICT = (
+    "Counted by depth-first search, the final maps by clingo too where it finished, and by merging "
+    "where maps need not be planar; by merging alone where only what it counts is shown."
+)
 # rows, columns, most places, planarity
 COLUMNS: list[tuple[int, int, int | None, bool]] = [
     (4, 4, None, False),
@@ -23,6 +28,7 @@ COLUMNS: list[tuple[int, int, int | None, bool]] = [
     (5, 4, 20, True),
     (5, 5, 25, True),
 ]
+MERGED = [(4, 5), (5, 4)]  # with any number of places, by merging alone
 
 
 def rows(
@@ -41,7 +47,30 @@ def rows(
             **figures,
             "way": "depth-first search",
             "clingo": _by_clingo(made, query, limit, watch, journal, crew),
+            "merging": {} if planar else _by_merging(made, query, watch, journal),
         }
+    for height, width in MERGED:
+        made = instance(grid(height, width), "snake")
+        yield {
+            "environment": f"{height}x{width}",
+            "planarity": False,
+            "places": None,
+            **dict.fromkeys(KEYS),
+            "per_step": [],
+            **_by_merging(made, Query(), watch, journal),
+            "way": "merging",
+            "clingo": {},
+            "merging": {},
+        }
+
+
+def _by_merging(made: Instance, query: Query, watch: Watch, journal: Journal) -> dict[str, int]:
+    """What is counted by merging."""
+    for value in journal.known(1):
+        return dict(value)
+    figures = dict(merged(made.experience, query, watch))
+    journal.keep(figures)
+    return figures
 
 
 def _by_clingo(

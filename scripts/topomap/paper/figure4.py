@@ -50,7 +50,7 @@ def differences(row: dict[str, Any]) -> list[str]:
     where = f"{row['environment']} {'with' if row['planarity'] else 'without'} planarity"
     return [
         f"{where}: {key} is {row[key]}, {source} has {figure}"
-        for source in ("paper", "expected", "clingo")
+        for source in ("paper", "expected", "clingo", "merging")
         for key, figure in row.get(source, {}).items()
         if row[key] != figure
     ]
@@ -68,7 +68,7 @@ def table_text(rows: list[dict[str, Any]]) -> str:
         lines.append(line("places, at most", "places"))
     for key in KEYS:
         lines.append(line(WORDS[key], key))
-        for source in "paper", "clingo":
+        for source in "paper", "clingo", "merging":
             cells = [row.get(source, {}).get(key) for row in rows]
             if any(cells):
                 lines.append([f"    {source}", *map(_cell, cells)])

@@ -14,6 +14,7 @@ from topomap.runtime.journal import Journal
 from topomap.runtime.watch import Watch
 from topomap.search import traversal
 from topomap.search.hypothesis import Hypothesis
+from topomap.search.merging import Merging
 from topomap.solver.circumscription import circumscribed
 from topomap.solver.share import ALONE, Crew
 from topomap.solver.solving import count, demand_cover
@@ -36,7 +37,21 @@ FINAL = {
     "optimal": ("closed", "boundary", "minimal"),  # where a closed map has no exception
     "perpendicular": ("closed", "perpendicular"),
 }
+MERGED: dict[str, tuple[str, ...]] = {  # what can be counted by merging, the quickest first
+    "perpendicular": FINAL["perpendicular"],
+    "closed_text": FINAL["closed_text"],
+    "final": (),
+}
 EXCEPTIONAL = ("closed", "exceptions", "minimal")  # what is optimal where each has some
+
+
+def merged(experience: Experience, query: Query, watch: Watch) -> Iterator[tuple[str, int]]:
+    """Figures of the maps of a query, each with its name, counted by merging; those come first that
+    are counted soonest. Raises InputError if there is what keeps hypotheses from being merged."""
+    for key, parts in MERGED.items():
+        watch.title(WORDS[key].strip(" ()").lower())
+        *_, number = Merging(experience, query.having(*parts)).counts(watch)
+        yield key, number
 
 
 def tree(

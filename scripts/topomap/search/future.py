@@ -147,16 +147,6 @@ class Future:
         before = ((possible & leave).bit_length() - 1) // self.slots
         return max(arrival - 1, before)
 
-    def last_left(self, gateway: int, possible: int) -> int:
-        """The last visit from which a step can leave by a gateway if no visits but those of the
-        bits ``possible`` can be at its place; -1 if there is none."""
-        if possible < 0:
-            return self.experience.steps - 1
-        slot = gateway % self.slots
-        if slot not in self._visits_by:
-            self._visits_by[slot] = self._mask(slot)
-        return ((possible & self._visits_by[slot][1]).bit_length() - 1) // self.slots
-
     def _mask(self, slot: int) -> tuple[int, int]:
         """The visits that arrive by a slot, and those after which a step leaves by it."""
         arrive = leave = 0

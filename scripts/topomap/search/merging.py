@@ -71,8 +71,7 @@ def refusal(experience: Experience, query: Query) -> str | None:
 
 
 class Merging:
-    """The number of hypotheses of an experience after each step, or of those of them that can still
-    become closed or perpendicular maps."""
+    """The number of maps of an experience, or of those that are closed or perpendicular."""
 
     def __init__(self, experience: Experience, query: Query):
         """Raises InputError, one line, if there is what keeps hypotheses from being merged."""
@@ -89,21 +88,18 @@ class Merging:
         self.kinds, self.stars, self._axes = whole.views, whole.stars, whole.axes
         self.largest = 0  # states at one step
         self._visits_at: dict[int, int] = {}
-        # Of each gateway of each visit, as if it were of a place of its own: the last step after
-        # which it can be linked, and the last visit from which a step can leave by it.
-        self._linked_by: dict[int, int] = {}
-        self._left_by: dict[int, int] = {}
         self._possible = [self.future.possible_visits(visit, 0) for visit in range(len(self.stars))]
-        for visit, star in enumerate(self.stars):
-            for gateway in star:
-                possible = self._possible[visit]
-                self._linked_by[gateway] = self.future.last_at(gateway, possible)
-                self._left_by[gateway] = self.future.last_left(gateway, possible)
+        # Of each turn, the steps that make it, as bits; and what is known of a gateway, numbered.
+        turned: dict[int, int] = {}
+        for step in range(1, experience.steps + 1):
+            turn = self.future.turns[step]
+            turned[turn] = turned.get(turn, 0) | 1 << step
+        self._turned = [*turned.items()]
+        self._named: dict[Any, int] = {}
 
     def counts(self, watch: Watch | None = None) -> Iterator[int]:
-        """How many hypotheses there are after each step, from 0. If maps are to be closed or
-        perpendicular, those are left out of which no such map can come any more; the last number is
-        that of the maps in any case."""
+        """How many hypotheses are left after each step, from 0. Those of which it is seen already
+        that no map comes of them are left out; the last number is that of the maps."""
         level: dict[Key, Counted] = {}
         pending, relations = self._place(0, {}, [[], [], []])
         self._add(level, 1, 0, 0, pending, relations, {}, 1)
@@ -111,6 +107,7 @@ class Merging:
         work = 0
         for step in range(1, self.experience.steps + 1):
             following: dict[Key, Counted] = {}
+            self._named.clear()
             for state, many in level.values():
                 work += 1
                 if watch and work % OFTEN == 0:
@@ -200,8 +197,8 @@ class Merging:
                     thrice[one] |= there & ~both
                 if far >> one & 1:
                     thrice[one] |= here & ~both
-            for of in (twice, thrice):
-                _rename(of, path, other)
+            _rename(twice, path, other)
+            _rename(thrice, path, other)
         _rename(meets, path, other)
 
     def _add(
@@ -246,7 +243,7 @@ class Merging:
         slots = self.slots
         ranked = sorted(order, key=order.__getitem__)
         key = (
-            tuple([uses[g] for g in ranked]),
+            tuple([self._named.setdefault(uses[g], len(self._named)) for g in ranked]),
             # How many slots lie between two gateways of one place.
             tuple(
                 [
@@ -281,29 +278,29 @@ class Merging:
     ) -> dict[int, tuple[int, int]]:
         """The gateways that the steps to come can use: each with the visits that can stand there,
         and the steps that can leave by it, as bits."""
-        slots, turns, last = self.slots, self.future.turns, self.experience.steps
+        slots, visits = self.slots, self._visits
+        later = -1 << (step + 1)
         arrive: dict[int, int] = {here: 1 << step}
         leave: dict[int, int] = {}
-        waiting = [(step, here)]
         for gateway in pending:
-            if visits := self._visits(gateway) >> (step + 1):
-                arrive[gateway] = arrive.get(gateway, 0) | visits << (step + 1)
-                waiting += [(step + 1 + n, gateway) for n in numbers(visits)]
-        for visit, gateway in waiting:
-            if visit == last:
-                continue
-            turn = turns[visit + 1]
-            out = gateway - gateway % slots + (gateway % slots + turn) % slots
-            bit = 1 << (visit + 1)
-            if out in pending:
-                leave[out] = leave.get(out, 0) | bit
-            elif out in links:
-                end = links[out]
-                if self._visits(end) & bit:
-                    leave[out] = leave.get(out, 0) | bit
-                    if not arrive.get(end, 0) & bit:
-                        arrive[end] = arrive.get(end, 0) | bit
-                        waiting.append((visit + 1, end))
+            if possible := visits(gateway) & later:
+                arrive[gateway] = arrive.get(gateway, 0) | possible
+        waiting = [*arrive]
+        while waiting:
+            gateway = waiting.pop()
+            slot, following = gateway % slots, arrive[gateway] << 1
+            for turn, steps in self._turned:
+                if possible := following & steps:
+                    out = gateway - slot + (slot + turn) % slots
+                    if out in pending:
+                        leave[out] = leave.get(out, 0) | possible
+                    elif out in links:
+                        end = links[out]
+                        if possible := possible & visits(end):
+                            leave[out] = leave.get(out, 0) | possible
+                            if possible & ~arrive.get(end, 0):
+                                arrive[end] = arrive.get(end, 0) | possible
+                                waiting.append(end)
         return {g: (arrive.get(g, 0), leave.get(g, 0)) for g in arrive.keys() | leave.keys()}
 
     def _visits(self, gateway: int) -> int:
@@ -331,63 +328,69 @@ class Merging:
     ) -> dict[int, int]:
         """The gateways that the steps to come can use, in an order that does not depend on the
         names of places, as far as that is soon found; each with its number."""
-        slots = self.slots
+        slots, known = self.slots, self._named
         rings: dict[int, list[int]] = {}
         for gateway in sorted(uses):
             rings.setdefault(gateway // slots, []).append(gateway)
         waiting = {*pending}
-        colour: dict[int, Any] = {
-            g: (use, g == here, g in waiting, (rings[g // slots][n - 1] - g) % slots)
-            for ring in rings.values()
-            for n, g in enumerate(ring)
-            for use in [uses[g]]
-        }
-        nothing: tuple[Any, ...] = ()
+        # What is known of each gateway, as a number: the same numbers stand for the same knowledge,
+        # in all states of a step.
+        colour: dict[int, int] = {}
+        for ring in rings.values():
+            before = ring[-1]
+            for g in ring:
+                told: Any = (uses[g], g == here, g in waiting, (before - g) % slots)
+                colour[g] = known.setdefault(told, len(known))
+                before = g
+        turned: dict[int, int] = {}
         for again in (True, False):
-            turned = {}
             for place, ring in rings.items():
-                seen = [colour[gateway] for gateway in ring]
+                seen = tuple([colour[gateway] for gateway in ring])
                 if len(ring) > 1:
-                    n = min(range(len(ring)), key=lambda n: seen[n:] + seen[:n])
-                    ring[:] = ring[n:] + ring[:n]
-                    seen = seen[n:] + seen[:n]
-                turned[place] = tuple(seen)
+                    n, seen = _least_turn(seen)
+                    if n:
+                        ring[:] = ring[n:] + ring[:n]
+                turned[place] = known.setdefault(seen, len(known))
             if not again or len({*turned.values()}) == len(rings):
                 break
-            names = {name: n for n, name in enumerate(sorted({*turned.values()}))}
             spot = {
-                g: (names[turned[p]], n) for p, ring in rings.items() for n, g in enumerate(ring)
+                g: (turned[place], n) for place, ring in rings.items() for n, g in enumerate(ring)
             }
             on: dict[int, list[tuple[int, int]]] = {}
             for gateway in pending:
                 on.setdefault(paths[gateway], []).append(spot[gateway])
-            form = {path: tuple(sorted(spots)) for path, spots in on.items()}
-            met = {
-                path: tuple(sorted(form[other] for other in numbers(meets[path]) if other in form))
-                for path in form
-            }
-            colour = {
-                g: (
+            form: dict[int, int] = {}
+            for path, spots in on.items():
+                spots.sort()
+                form[path] = known.setdefault(tuple(spots), len(known))
+            met: dict[int, int] = {}
+            for path in form:
+                others = sorted([form[other] for other in numbers(meets[path]) if other in form])
+                met[path] = known.setdefault((form[path], *others), len(known))
+            for g, at in spot.items():
+                told = (
                     at,
-                    (form[paths[g]], met[paths[g]]) if g in waiting else nothing,
-                    spot[ends[g]] if g in ends else nothing,
+                    met[paths[g]] if g in waiting else -1,
+                    spot[ends[g]] if g in ends else -1,
                 )
-                for g, at in spot.items()
-            }
+                colour[g] = known.setdefault(told, len(known))
         ranked = sorted(rings, key=lambda place: (turned[place], place))
         return {g: n for n, g in enumerate(g for place in ranked for g in rings[place])}
 
     def _renumbered(self, relation: list[int], number: dict[int, int]) -> tuple[int, ...]:
         """A relation of the paths that are kept, by their new numbers."""
-        made = []
-        for path in number:
-            of = relation[path]
-            made.append(sum(1 << new for old, new in number.items() if of >> old & 1))
-        return tuple(made)
+        kept = sum(1 << path for path in number)
+        return tuple(
+            [sum([1 << number[one] for one in numbers(relation[path] & kept)]) for path in number]
+        )
 
 
-def _hashable(ring: list[Any]) -> tuple[Any, ...]:
-    return tuple(ring)
+def _least_turn(ring: tuple[int, ...]) -> tuple[int, tuple[int, ...]]:
+    """The least of the tuples that are this one turned, and by how many places it is turned."""
+    least = min(ring)
+    turns = [(ring[n:] + ring[:n], n) for n, one in enumerate(ring) if one == least]
+    turned, n = min(turns)
+    return n, turned
 
 
 def _rename(relation: list[int], path: int, other: int) -> None:
