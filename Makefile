@@ -4,7 +4,8 @@
 # make lint       check style and types
 # make instances  make the batch that instances/batch.txt lists (try make -j2 instances)
 # make bench      time the encodings and the search, write docs/benchmark.md, then what steps of
-#                 follow, questions, the start and solve take, docs/{online,asking,start,solve}.md (an hour;
+#                 follow, questions, the start, solve and long logs take,
+#                 docs/{online,asking,start,solve,logs}.md (two hours;
 #                 BENCH: options, such as BENCH='--only 8x8', BENCH=--quick, BENCH=--help)
 # make figures    draw the pictures of the pages again, docs/figures/
 # make knowledge  count what a compass and odometry leave, docs/knowledge.md and its picture (an hour)
@@ -102,6 +103,7 @@ bench: $(TOOLS)
 	PYTHONPATH=tests $(BIN)/python -m bench.asking
 	PYTHONPATH=tests $(BIN)/python -m bench.start
 	PYTHONPATH=tests $(BIN)/python -m bench.ways --networks "$(MAPS)"
+	PYTHONPATH=tests $(BIN)/python -m bench.logs
 
 figures: $(SETUP)
 	$(BIN)/topomap figures --directory docs/figures

@@ -48,13 +48,15 @@ WORLDS = (
 HEAD = """# Long logs
 
 Written by `make bench` (`python -m bench.logs`): random walks through three grids, five of each
-length. Seconds are those of whole processes, by the clock, on {cores} cores at a load of {load:.1f}.
-The yardstick Y is `clingo -q` on the 4x4 snake with at most 16 places, all maps, in the same run:
-{yard:.3f} s. A call is cut after 1.5 times its goal, or after {limit:.0f} Y where there is none.
+length. Seconds are those of whole processes, by the clock, on {cores} cores, at a load of
+{load:.1f} when it began. The yardstick Y is `clingo -q` on the 4x4 snake with at most 16 places,
+all maps, in the same run: {yard:.3f} s. A call is cut after 1.5 times its goal, or after
+{limit:.0f} Y where there is none.
 
 ## All maps
 
-With at most as many places as the world has. The goal is 65 Y for 4,000 steps and 400 Y for 50,000.
+With at most as many places as the world has. The goal is 65 Y for 4,000 steps, and 400 Y for
+50,000.
 """
 BEST_HEAD = """
 ## The best map that is soon found
