@@ -8,7 +8,7 @@ from conftest import SHARED, run
 from topomap.model.facts import parse
 from topomap.runtime.errors import InputError
 from topomap.worlds.environment import grid
-from topomap.worlds.network import load
+from topomap.worlds.files import load
 
 
 def write(tmp_path, graph):
@@ -28,14 +28,14 @@ def square(kind=nx.MultiDiGraph, scale=100.0, x="x", y="y", **attributes):
 
 
 def test_bearings_become_slots(tmp_path):
-    made, warnings = load(write(tmp_path, square()), 4, 0)
+    made, warnings, *_ = load(write(tmp_path, square()), None, 4, 0)
     assert made.map.links["a", 0] == ("b", 2)
     assert made.map.links["b", 1] == ("c", 3)
     assert not warnings
     assert made.map.isomorphic(grid(2, 2).map)
-    turned, _ = load(write(tmp_path, square()), 4, 90)
+    turned, *_ = load(write(tmp_path, square()), None, 4, 90)
     assert turned.map.links["a", 3] == ("b", 1)
-    eight, _ = load(write(tmp_path, square()), 8, 0)
+    eight, *_ = load(write(tmp_path, square()), None, 8, 0)
     assert eight.map.links["a", 0] == ("b", 4)
 
 
@@ -44,7 +44,7 @@ def test_a_two_way_pair_is_one_way_and_loops_go(tmp_path):
     graph.add_edge("b", "a")
     graph.add_edge("a", "a")
     graph.add_node("z", x=5.0, y=5.0)
-    made, warnings = load(write(tmp_path, graph), 4, 0)
+    made, warnings, *_ = load(write(tmp_path, graph), None, 4, 0)
     assert len(made.map.edges()) == 4
     assert "z" not in made.map.stars
     assert [warning.partition(": ")[2] for warning in warnings] == [
@@ -52,14 +52,14 @@ def test_a_two_way_pair_is_one_way_and_loops_go(tmp_path):
         "places without a way left out: 1",
     ]
     undirected = write(tmp_path, square(nx.Graph))
-    assert load(undirected, 4, 0)[0].map == made.map
+    assert load(undirected, None, 4, 0)[0].map == made.map
 
 
 def test_without_a_crs_the_guess_is_told(tmp_path):
     file = write(tmp_path, square(crs=""))
     graph = nx.read_graphml(file)
     del graph.graph["crs"]
-    (warning,) = load(write(tmp_path, graph), 4, 0)[1]
+    (warning,) = load(write(tmp_path, graph), None, 4, 0)[1]
     assert "no crs" in warning
 
 
@@ -69,7 +69,7 @@ def test_geographic_coordinates_are_known_by_their_crs(tmp_path, crs):
     graph.add_node("a", x=20.0, y=60.0)
     graph.add_node("b", x=20.01, y=60.005)
     graph.add_edge("a", "b")
-    assert load(write(tmp_path, graph), 16, 0)[0].map.stars["a"] == {2}
+    assert load(write(tmp_path, graph), None, 16, 0)[0].map.stars["a"] == {2}
 
 
 def test_a_tour_of_a_part_is_always_the_same(tmp_path):
@@ -110,9 +110,9 @@ def test_parallel_ways_and_parts_are_told(tmp_path):
     graph = square()
     graph.add_edge("a", "b")
     with pytest.raises(InputError, match=r"place a: the ways to b and b .* straight"):
-        load(write(tmp_path, graph), 4, 0)
+        load(write(tmp_path, graph), None, 4, 0)
     apart = nx.disjoint_union(square(), square(scale=70))
-    assert "not connected" in load(write(tmp_path, apart), 4, 0)[1][0]
+    assert "not connected" in load(write(tmp_path, apart), None, 4, 0)[1][0]
 
 
 def test_degrees_are_scaled_by_the_latitude(tmp_path):
@@ -122,15 +122,15 @@ def test_degrees_are_scaled_by_the_latitude(tmp_path):
     graph.add_node("a", x=20.0, y=60.0)
     graph.add_node("b", x=20.01, y=60.005)
     graph.add_edge("a", "b")
-    assert load(write(tmp_path, graph), 16, 0)[0].map.stars["a"] == {2}
+    assert load(write(tmp_path, graph), None, 16, 0)[0].map.stars["a"] == {2}
     graph.graph["crs"] = "+proj=utm +zone=34"
-    assert load(write(tmp_path, graph), 16, 0)[0].map.stars["a"] == {3}
+    assert load(write(tmp_path, graph), None, 16, 0)[0].map.stars["a"] == {3}
     graph.graph.clear()
-    assert load(write(tmp_path, graph), 16, 0)[0].map.stars["a"] == {2}
+    assert load(write(tmp_path, graph), None, 16, 0)[0].map.stars["a"] == {2}
     lonlat = nx.relabel_nodes(graph, {})
     for node in lonlat.nodes.values():
         node["lon"], node["lat"] = node.pop("x"), node.pop("y")
-    assert load(write(tmp_path, lonlat), 16, 0)[0].map.stars["a"] == {2}
+    assert load(write(tmp_path, lonlat), None, 16, 0)[0].map.stars["a"] == {2}
 
 
 def broken(**nodes):
@@ -155,7 +155,7 @@ def broken(**nodes):
 def test_networks_refused(tmp_path, graph, fault):
     file = write(tmp_path, graph)
     with pytest.raises(InputError, match=fault) as error:
-        load(file, 4, 0)
+        load(file, None, 4, 0)
     assert str(file) in str(error.value)
 
 
@@ -166,8 +166,8 @@ def test_two_ways_in_one_slot_name_the_place(tmp_path):
     with pytest.raises(
         InputError, match=r"place a: the ways to b and e fall into one slot, 0 of 4"
     ):
-        load(write(tmp_path, graph), 4, 0)
-    assert len(load(write(tmp_path, graph), 64, 0)[0].map.edges()) == 5
+        load(write(tmp_path, graph), None, 4, 0)
+    assert len(load(write(tmp_path, graph), None, 64, 0)[0].map.edges()) == 5
 
 
 @pytest.mark.parametrize(
@@ -202,7 +202,7 @@ def test_the_manhattan_piece():
     file = SHARED / "manhattan.graphml"
     if not file.exists():
         pytest.skip(f"the real map is not here: {file}")
-    made, warnings = load(file, 4, 29)
+    made, warnings, *_ = load(file, None, 4, 29)
     assert not warnings
     assert (len(made.map.stars), len(made.map.edges()), made.map.genus()) == (46, 73, 0)
     assert made.map.path_axiom_fault() is None

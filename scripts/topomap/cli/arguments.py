@@ -60,6 +60,12 @@ def number(kind: type, least: float, most: float = LARGEST) -> Any:
     return number
 
 
+def number_or_auto(kind: type, least: float) -> Any:
+    """The same, or ``auto``, which is None."""
+    plain = number(kind, least)
+    return lambda text: None if text == "auto" else plain(text)
+
+
 def add_start(add: Any, facing: str) -> None:
     """Where an exploration starts, and what it can see."""
     add(
@@ -122,28 +128,66 @@ def add_environments(command: Parser, common: Parser, rest: str) -> Any:
                 metavar="RATE",
                 help="share of the ways to take away (default: %(default)s)",
             )
-    help = (
-        "a street or corridor network with coordinates: each way is a straight line between "
-        "its ends, and can be gone both ways; loops are left out"
-    )
-    example = f"{name} network city.graphml --slots 4 --north 29 {rest}"
-    sub = environment(kinds, "network", common, help, example)
-    sub.add_argument("file", metavar="FILE.graphml")
-    sub.add_argument(
-        "--slots",
-        type=number(int, 2),
-        default=4,
-        metavar="K",
-        help="directions at a place, even (default: %(default)s)",
-    )
-    sub.add_argument(
-        "--north",
-        type=number(float, -LARGEST),
-        default=0.0,
-        metavar="DEGREES",
-        help="bearing of slot 0, clockwise of north (default: %(default)g)",
-    )
+    help = "a world from a file, such as a street network: see docs/files.md for the formats"
+    for kind in ("world", "network"):  # the second name is the older one
+        example = f"{name} {kind} city.graphml --slots 4 --north 29 {rest}"
+        _add_file(environment(kinds, kind, common, help, example))
     return kinds
+
+
+def _add_file(command: Parser) -> None:
+    """How a file with a world is read."""
+    add = command.add_argument
+    add("file", metavar="FILE")
+    add(
+        "--slots",
+        type=number_or_auto(int, 2),
+        metavar="K",
+        help="directions at a place, even; auto: the fewest at which no two exits of a place share "
+        "one (default: auto)",
+    )
+    add(
+        "--north",
+        type=number_or_auto(float, -LARGEST),
+        metavar="DEGREES",
+        help="bearing of slot 0, clockwise of north; auto: the one that may be off the most before "
+        "two exits of a place share a slot (default: auto)",
+    )
+    add(
+        "--straight",
+        type=number(float, 0, 180),
+        metavar="DEGREES",
+        help="two exits of a place are on one path if each is the one most nearly opposite to the "
+        "other, and they are off by at most so many degrees (default: those in opposite slots)",
+    )
+    add(
+        "--along",
+        type=number(float, 0),
+        default=10.0,
+        metavar="METRES",
+        help="the direction of a bent way at its end is that of the point so far along it, in "
+        "metres or in the units of the file (default: %(default)g)",
+    )
+    units = command.add_mutually_exclusive_group()
+    units.add_argument(
+        "--plane", action="store_true", help="coordinates are those of a plane, such as metres"
+    )
+    units.add_argument(
+        "--degrees", action="store_true", help="coordinates are longitude and latitude"
+    )
+    add("--two-way", action="store_true", help="take ways that can be gone one way as two-way")
+    add(
+        "--loops",
+        action="store_true",
+        help="keep ways back to their own place, which the path axiom forbids (--no-path-axiom)",
+    )
+    add("--names", action="store_true", help="the name of a place in the file is its landmark")
+    add(
+        "--radius",
+        type=number(float, 0),
+        metavar="METRES",
+        help="of a picture of a floor: junctions that are no further apart are one place",
+    )
 
 
 def environment(kinds: Any, kind: str, common: Parser, help: str, example: str) -> Parser:

@@ -121,13 +121,22 @@ def senses_of(args: argparse.Namespace) -> "Senses":
 
 def environment_of(args: argparse.Namespace) -> "Environment":
     """The environment that a call of ``generate`` or ``simulate`` names."""
-    from topomap.worlds import environment, network
+    from topomap.worlds import environment
 
-    if args.kind == "network":
-        world, warnings = network.load(args.file, args.slots, args.north)
-        for warning in warnings:
+    if args.kind in ("world", "network"):
+        from topomap.worlds import files
+        from topomap.worlds.plan import Reading
+
+        degrees = True if args.degrees else False if args.plane else None
+        loops = args.loops or getattr(args, "no_path_axiom", False)
+        reading = Reading(args.along, degrees, loops, args.names, args.radius)
+        how = args.slots, args.north, args.straight, args.two_way
+        loaded = files.load(args.file, reading, *how)
+        for warning in loaded.warnings:
             say(f"warning: {warning}")
-        return world
+        if loaded.chosen:
+            say(loaded.chosen)
+        return loaded.environment
     thinned: dict[str, Any] = (
         {"thin": args.thin, "seed": args.seed or 0} if args.kind == "maze" else {}
     )

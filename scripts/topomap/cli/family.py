@@ -56,7 +56,7 @@ def run(args: argparse.Namespace) -> int:
                 f"{args.file}:{line}: a second instance named {made.name}; give it another --name"
             )
         calls[made.name] = shlex.join(call) + "\n"
-        if parsed.kind == "network":  # make sees by this line that the map was changed
+        if parsed.kind in ("world", "network"):  # make sees by this line that the map was changed
             is_now = Path(parsed.file).stat()
             calls[made.name] += f"# {is_now.st_size} bytes, changed {is_now.st_mtime_ns}\n"
     # At any moment what was made is listed, so that a call that was cut short can be repeated.

@@ -11,7 +11,7 @@ from topomap.model.found import BEST
 from topomap.runtime import formats, nx
 from topomap.runtime.errors import InputError
 from topomap.runtime.files import read_bytes
-from topomap.worlds.network import read_graphml
+from topomap.worlds.readers.graphml import read_graphml
 
 
 def import_map(file: str) -> str:

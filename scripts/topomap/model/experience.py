@@ -670,7 +670,23 @@ def observe(
     views = tuple(world.view(dstate) for dstate in dstates)
     landmarks = tuple(world.landmarks.get(place, frozenset()) for place, _ in dstates)
     marker = _marker(dstates, {*drops}, {*picks})
-    return Experience(world.slots, views, tuple(turns), landmarks, *marker), tuple(truth)
+    straight = (
+        [_pairs_seen(world, dstate) for dstate in dstates] if world.across is not None else ()
+    )
+    seen = Experience(world.slots, views, tuple(turns), landmarks, *marker, straight=straight)
+    return seen, tuple(truth)
+
+
+def _pairs_seen(world: TopologicalMap, stood: Gateway) -> set[Slots]:
+    """Which gateways of a place are on one path, in slots clockwise of the one stood at."""
+    place, at = stood
+    pairs = set()
+    for slot in world.stars[place]:
+        if (place, slot) in (world.across or {}):
+            other = (world.across or {})[place, slot][1]
+            one, two = sorted(((slot - at) % world.slots, (other - at) % world.slots))
+            pairs.add((one, two))
+    return pairs
 
 
 def _marker(

@@ -1,0 +1,212 @@
+"""From a plan to a world: which slots the exits of a place have, and which of them are on one path.
+
+Slot 0 of K points ``north`` degrees clockwise of north, and each exit has the slot whose direction
+is nearest to its bearing. No two exits of a place may have one slot.
+"""
+
+import math
+from collections.abc import Iterable, Mapping
+from itertools import pairwise
+from typing import NamedTuple
+
+from topomap.model.experience import MOST_SLOTS
+from topomap.model.topology import Gateway, Place, TopologicalMap, label
+from topomap.runtime.errors import InputError
+from topomap.worlds.plan import Exit, Plan, Way
+
+FEWEST, MOST = 4, 360  # slots that are tried; with four, straight on and a turn can be told apart
+SHOWN = 20  # clashes that are listed
+
+
+class Layout(NamedTuple):
+    """A number of slots, where slot 0 points (degrees clockwise of north), and by how many degrees
+    that may be turned either way before two exits of a place share a slot."""
+
+    slots: int
+    north: float
+    margin: float
+
+    def slot(self, bearing: float) -> int:
+        """The slot whose direction is nearest to a bearing."""
+        return math.floor((bearing - self.north) * self.slots / 360 + 0.5) % self.slots
+
+
+class Clash(NamedTuple):
+    """Two exits of a place that share a slot, each with the place to which its way leads."""
+
+    place: Place
+    slot: int
+    one: tuple[Place, float]
+    other: tuple[Place, float]
+
+    def text(self) -> str:
+        """The clash in words."""
+        (to, bearing), (other, also) = self.one, self.other
+        return (
+            f"place {label(self.place)}: the ways to {label(to)} ({bearing:.1f} degrees) and "
+            f"{label(other)} ({also:.1f}) share slot {self.slot}"
+        )
+
+
+def exits_of(ways: Iterable[Way]) -> dict[Place, list[tuple[float, int, int]]]:
+    """Of each place its exits: the bearing, 0 up to 360, the number of the way, and which of its
+    two ends it is; sorted."""
+    exits: dict[Place, list[tuple[float, int, int]]] = {}
+    for number, way in enumerate(ways):
+        for end, (place, bearing) in enumerate(way.ends):
+            exits.setdefault(place, []).append((bearing % 360, number, end))
+    return {place: sorted(of) for place, of in sorted(exits.items())}
+
+
+def layout(file: str, plan: Plan, slots: int | None = None, north: float | None = None) -> Layout:
+    """The fewest slots, and the best turn of them, by which no two exits of a place share one; of
+    these only what is not given is chosen. The best turn is in the middle of the largest range of
+    such turns. Raises InputError, one line, which lists what clashes if nothing parts the exits."""
+    if slots is not None and (not 2 <= slots <= MOST_SLOTS or slots % 2):
+        raise InputError(f"{file}: {slots} slots: they must be even, from 2 to {MOST_SLOTS}")
+    if north is not None and not math.isfinite(north):
+        raise InputError(f"{file}: north {north}: it must be a finite number of degrees")
+    exits = exits_of(plan.ways)
+    gaps = [gap for of in exits.values() for gap in _gaps(of)]
+    if slots is None and north is None and plan.slots:
+        slots, north = plan.slots, 0.0
+    for many in range(FEWEST, MOST + 1, 2) if slots is None else [slots]:
+        if slots is None and max(map(len, exits.values()), default=0) > many:
+            continue
+        turn, margin = (
+            _best_turn(gaps, many) if north is None else (north, _margin(gaps, many, north))
+        )
+        if margin >= 0:
+            return Layout(many, turn, margin)
+    most = Layout(MOST if slots is None else slots, north or 0.0, 0.0)
+    found = clashes(plan.ways, exits, most)
+    told = "; ".join(clash.text() for clash in found[:SHOWN])
+    more = f"; and {len(found) - SHOWN} more" if len(found) > SHOWN else ""
+    turned = "however they are turned" if north is None else f"with slot 0 at {north:g} degrees"
+    upto = f"up to {MOST}" if slots is None else str(slots)
+    raise InputError(f"{file}: {upto} slots do not part all ways, {turned}: {told}{more}")
+
+
+def _gaps(exits: list[tuple[float, int, int]]) -> list[tuple[float, float]]:
+    """The bearings of each two exits of a place that follow each other, clockwise."""
+    if len(exits) < 2:
+        return []
+    bearings = [bearing for bearing, _, _ in exits]
+    return [*pairwise(bearings), (bearings[-1], bearings[0] + 360)]
+
+
+def _best_turn(gaps: list[tuple[float, float]], slots: int) -> tuple[float, float]:
+    """The middle of the largest range of turns at which all exits are parted, and half its width;
+    a negative width if there is none. Of the turns that are the same but for whole slots it is the
+    one nearest to north."""
+    width = 360 / slots
+    # Between two bearings that are less than a slot apart there must be a border of slots. Borders
+    # are half a slot from where slots point. So the turns that fail begin half a slot after the
+    # second bearing, and end where a whole slot has gone by since the first one.
+    bad = []
+    for one, other in gaps:
+        if other - one < width:
+            begin = (other + width / 2) % width
+            end = begin + width - (other - one)
+            bad += [(begin, min(end, width))] + [(0.0, end - width)] * (end > width)
+    if not bad:
+        return 0.0, width / 2
+    free, reached = [], 0.0
+    for begin, end in sorted(bad):
+        if begin > reached:
+            free.append((reached, begin))
+        reached = max(reached, end)
+    if reached < width:
+        free.append((reached, width))
+    if len(free) > 1 and free[0][0] == 0 and free[-1][1] == width:
+        free[-1] = (free[-1][0], width + free.pop(0)[1])
+    begin, end = max(free, key=lambda part: part[1] - part[0], default=(0.0, -1.0))
+    turn = (begin + end) / 2 % width
+    turn -= width if turn > width / 2 else 0
+    return turn, min((end - begin) / 2, _margin(gaps, slots, turn))
+
+
+def _margin(gaps: list[tuple[float, float]], slots: int, north: float) -> float:
+    """By how many degrees slots may be turned either way before two exits share one; negative if
+    they do."""
+    width = 360 / slots
+    margin = width / 2
+    for one, other in gaps:
+        if other - one >= width:
+            continue
+        border = math.floor((one - north) / width + 0.5) * width + width / 2 + north
+        if not one < border <= other:
+            return -1.0
+        margin = min(margin, border - one, other - border)
+    return margin
+
+
+def clashes(
+    ways: tuple[Way, ...], exits: Mapping[Place, list[tuple[float, int, int]]], at: Layout
+) -> list[Clash]:
+    """Each two exits of a place that share a slot."""
+    found = []
+    for place, of in exits.items():
+        taken: dict[int, tuple[Place, float]] = {}
+        for bearing, number, end in of:
+            slot, there = at.slot(bearing), (ways[number].ends[1 - end].place, bearing)
+            if slot in taken:
+                found.append(Clash(place, slot, taken[slot], there))
+            taken.setdefault(slot, there)
+    return found
+
+
+def links_of(ways: Iterable[Way], at: Layout) -> dict[Gateway, Gateway]:
+    """The links of the ways, in both directions."""
+    links: dict[Gateway, Gateway] = {}
+    for way in ways:
+        one, other = ((place, at.slot(bearing)) for place, bearing in way.ends)
+        links[one], links[other] = other, one
+    return links
+
+
+def across_of(ways: tuple[Way, ...], at: Layout, most: float) -> dict[Gateway, Gateway]:
+    """Which exits of a place are on one path: each with that which is most nearly straight across,
+    if this holds both ways, and it is off by at most so many degrees."""
+    across: dict[Gateway, Gateway] = {}
+    for place, of in exits_of(ways).items():
+        best = {}
+        for bearing, number, end in of:
+            others = [one for one in of if one[1:] != (number, end)]
+            off = [(_bend(bearing, one[0]), one[1:]) for one in others]
+            if off and min(off)[0] <= most:
+                best[number, end] = min(off)[1]
+        for here, there in best.items():
+            if best.get(there) == here:
+                one, other = (
+                    (place, at.slot(ways[number].ends[end].bearing))
+                    for number, end in (here, there)
+                )
+                across[one] = other
+    return across
+
+
+def _bend(one: float, other: float) -> float:
+    """By how many degrees two bearings are not opposite."""
+    return abs((one - other) % 360 - 180)
+
+
+def world_of(plan: Plan, at: Layout, straight: float | None = None) -> TopologicalMap:
+    """The world of a plan; with ``straight``, exits are on one path as ``across_of`` has it, else
+    if they are opposite."""
+    links = links_of(plan.ways, at)
+    stars: dict[Place, set[int]] = {place: set() for place in sorted({p for p, _ in links})}
+    for place, slot in links:
+        stars[place].add(slot)
+    return TopologicalMap(
+        at.slots,
+        {place: frozenset(star) for place, star in stars.items()},
+        links,
+        {place: terms for place, terms in plan.landmarks.items() if place in stars and terms},
+        None if straight is None else across_of(plan.ways, at, straight),
+    )
+
+
+def exit_towards(place: Place, here: tuple[float, float], there: tuple[float, float]) -> Exit:
+    """The exit of a place at a point, in the direction of another point of the plane."""
+    return Exit(place, math.degrees(math.atan2(there[0] - here[0], there[1] - here[1])))

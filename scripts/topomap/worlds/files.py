@@ -1,0 +1,106 @@
+"""Worlds from files: of each format that ``readers`` knows."""
+
+import math
+from collections.abc import Iterable
+from pathlib import Path
+from typing import NamedTuple
+
+from topomap.model.topology import Gateway, label
+from topomap.runtime import nx
+from topomap.runtime.errors import InputError
+from topomap.worlds import readers
+from topomap.worlds.courses import SHOWN, Layout, layout, world_of
+from topomap.worlds.environment import Environment, plain
+from topomap.worlds.plan import Plan, Reading, Way
+from topomap.worlds.senses import Move
+
+
+class Loaded(NamedTuple):
+    """A world from a file, what there is to warn of, the plan in the file, and the slots.
+    ``chosen`` says which slots were chosen, if they were."""
+
+    environment: Environment
+    warnings: list[str]
+    plan: Plan
+    layout: Layout
+    chosen: str | None
+
+
+def load(
+    file: str | Path,
+    reading: Reading | None = None,
+    slots: int | None = None,
+    north: float | None = None,
+    straight: float | None = None,
+    two_way: bool = False,
+) -> Loaded:
+    """The world in a file.
+
+    Parameters:
+        file: of one of the formats that ``readers`` knows.
+        reading: how it is to be read.
+        slots, north: the number of slots, and where slot 0 points, in degrees clockwise of north;
+            None: the fewest slots, and the best turn, at which no two exits of a place share one.
+        straight: by how many degrees two exits of a place may be off being opposite to be on one
+            path; None: those in opposite slots are on one path.
+        two_way: whether ways that can be gone one way only are taken to be two-way.
+
+    Raises:
+        InputError: one line.
+    """
+    reading = reading or Reading()
+    plan = readers.read(file, reading)
+    alone = [way for way in plan.ways if way.one_way]
+    if alone and not two_way:
+        raise InputError(
+            f"{file}: {len(alone)} of {len(plan.ways)} ways can be gone one way only "
+            f"({_named(alone)}); --two-way takes them as two-way"
+        )
+    told = [*plan.told]
+    if alone:
+        told.append(f"{file}: one-way ways taken as two-way: {len(alone)}")
+    at = layout(str(file), plan, slots, north)
+    world = world_of(plan, at, straight)
+    graph = nx.Graph((one[0], other[0]) for one, other in world.links.items())
+    if (parts := nx.number_connected_components(graph)) > 1:
+        told.append(f"{file}: not connected; an exploration stays in its part, of: {parts}")
+    call = ["world", Path(file).name, "--slots", str(at.slots), "--north", plain(at.north)]
+    call += [] if straight is None else ["--straight", plain(straight)]
+    call += _options(reading) + ["--two-way"] * bool(alone)
+    notes = (f"slot 0 at {plain(at.north)} degrees clockwise of north", *plan.notes)
+    made = Environment(plan.name, tuple(call), world, None, notes, _moves(plan, at))
+    chosen = f"{file}: {_chosen(at)}" if slots is None or north is None else None
+    return Loaded(made, told, plan, at, chosen)
+
+
+def _options(reading: Reading) -> list[str]:
+    """The options of a call by which a file is read so."""
+    usual = Reading()
+    call = [] if reading.along == usual.along else ["--along", plain(reading.along)]
+    call += {None: [], True: ["--degrees"], False: ["--plane"]}[reading.degrees]
+    call += ["--loops"] * reading.loops + ["--names"] * reading.landmarks
+    return call + ([] if reading.radius is None else ["--radius", plain(reading.radius)])
+
+
+def _named(ways: Iterable[Way]) -> str:
+    """Some ways by their ends."""
+    names = [" to ".join(label(end.place) for end in way.ends) for way in ways]
+    return ", ".join(names[:SHOWN]) + (f" and {len(names) - SHOWN} more" * (len(names) > SHOWN))
+
+
+def _chosen(at: Layout) -> str:
+    turned = f"slot 0 at {at.north:.6g} degrees clockwise of north"
+    free = f"they may be turned by {at.margin:.3g} degrees either way before two exits share one"
+    return f"{at.slots} slots chosen, {turned}; {free}"
+
+
+def _moves(plan: Plan, at: Layout) -> dict[Gateway, Move]:
+    """How far each gateway's way leads, where the file tells it."""
+    moves: dict[Gateway, Move] = {}
+    for way in plan.ways:
+        if way.move is None:
+            continue
+        (east, north), ends = way.move, way.ends
+        for (place, bearing), sign in zip(ends, (1, -1), strict=True):
+            moves[place, at.slot(bearing)] = (sign * east, sign * north)
+    return {out: move for out, move in moves.items() if all(map(math.isfinite, move))}

@@ -1,0 +1,30 @@
+"""Readers of the files that explorers have, one module a format.
+
+Each module has ``fits(name, content)``, which says whether a file looks like this format, and
+``read(file, content, reading)``, which makes a ``Plan`` of it, or raises InputError: one line that
+names the file, and the line or the item where the fault is. ``FORMATS`` names all of them, in the
+order in which they are tried.
+"""
+
+from importlib import import_module
+from pathlib import Path
+
+from topomap.runtime.errors import InputError
+from topomap.runtime.files import read_bytes
+from topomap.worlds.plan import Plan, Reading
+
+FORMATS = {"graphml": "a street or corridor network in GraphML, as OSMnx writes it"}
+
+
+def read(file: str | Path, reading: Reading) -> Plan:
+    """The plan in a file, whose format is told by its content. Raises InputError, one line."""
+    content = read_bytes(file)
+    for name in FORMATS:
+        reader = import_module(f"{__name__}.{name}")
+        if reader.fits(Path(file).name, content):
+            plan: Plan = reader.read(str(file), content, reading)
+            if not plan.ways:
+                raise InputError(f"{file}: no ways in it")
+            return plan
+    known = "; ".join(FORMATS.values())
+    raise InputError(f"{file}: it is none of the formats that are known: {known}")
