@@ -30,24 +30,26 @@ TITLE = 9  # points
 Box = tuple[float, float, float, float]  # left, bottom, right, top
 
 
-def draw(axes: Axes, scene: Scene, faces: bool = True, route: bool = True) -> Layout:
-    """Draw a map into axes; returns where everything is. Of a map with links that cross others
-    the faces are not drawn: those of the planar part are not the map's."""
+def draw(
+    axes: Axes, scene: Scene, faces: bool = True, route: bool = True, laid: Layout | None = None
+) -> Layout:
+    """Draw a map into axes, as it is ``laid`` out; returns where everything is. Of a map with links
+    that cross others the faces are not drawn: those of the planar part are not the map's."""
     world = scene.world
     at = scene.at
-    laid = layout(world, scene.ahead)
+    laid = laid or layout(world, scene.ahead)
     for gateway, line in laid.lines.items():
         _draw_line(axes, world, laid, gateway, line)
     for place, point in laid.places.items():
         _draw_place(axes, world, laid, place, point)
     texts: list[Box] = []
     if route:
-        dots = {gateway: _even(line) for gateway, line in laid.lines.items()}
+        number = {gateway: n for n, gateway in enumerate(laid.lines)}
+        dots = np.array([_even(line) for line in laid.lines.values()])
         for gateway, steps in scene.steps().items():
-            own = gateway, world.links[gateway]
-            others = np.array([line for end, line in dots.items() if end not in own])
-            spots = others.reshape(-1, 2)
-            texts.append(_draw_steps(axes, laid, gateway, steps, spots))
+            own = [number[gateway], number[world.links[gateway]]]
+            others = np.delete(dots, own, axis=0).reshape(-1, 2)
+            texts.append(_draw_steps(axes, laid, gateway, steps, others))
     taken = [(x - RADIUS, y - RADIUS, x + RADIUS, y + RADIUS) for x, y in laid.places.values()]
     stubs = [line for end, line in laid.lines.items() if end not in world.links]
     taken += [(*(line.min(0) - 0.05), *(line.max(0) + 0.05)) for line in stubs]
@@ -73,10 +75,11 @@ def draw(axes: Axes, scene: Scene, faces: bool = True, route: bool = True) -> La
 
 
 def title(scene: Scene, laid: Layout) -> str:
-    """What the map is, and how many links cross others."""
+    """What the map is, and how many links cross others; or that it is drawn plainly."""
     count = len(laid.crossing)
     others = "1 link crosses others" if count == 1 else f"{count} links cross others"
-    return f"{scene.title}, {others}" if count else scene.title
+    told = [scene.title, *[others] * bool(count), *[laid.note] * bool(laid.note)]
+    return ", ".join(told)
 
 
 @cache

@@ -1,34 +1,40 @@
 """A planar part of a map, and ways for the other links through its faces."""
 
 import random
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 
+from topomap.drawing.plain import TooLong
 from topomap.model.topology import Gateway, Place, TopologicalMap
 from topomap.runtime import nx
+from topomap.runtime.watch import Late, never
 
 LINK_ORDERS = 30  # of links, for a planar part
-WORK = 1_000_000  # gateways looked at for a planar part, before no further order is tried
+WORK = 400_000  # gateways looked at for a planar part, before no further order is tried
 Link = tuple[Gateway, Gateway]
 
 
-def planar_part(
-    world: TopologicalMap, work: int = WORK, passed: Callable[[], bool] = lambda: False
-) -> TopologicalMap:
+def planar_part(world: TopologicalMap, work: int = WORK, late: Late = never) -> TopologicalMap:
     """The map with links enough to be connected, and all further ones that leave it planar.
     Which these are depends on the order of the links; of some orders the one by which the
     rest cross the fewest links counts. Of a large map fewer orders are tried: none after the
-    first one once so much ``work`` is done, or when the time is ``passed``."""
+    first one once so much ``work`` is done, or when it is ``late``. Raises TooLong if it is late
+    before the first order is done."""
     if not world.genus():
         return world
     edges = world.edges()
     best: tuple[tuple[int, int], list[Link]] | None = None
     for seed in range(LINK_ORDERS):
-        if best and (work <= 0 or passed()):
+        if best and work <= 0:
             break
         walks = Walks(world, ())
         kept = walks.planar(random.Random(seed).sample(edges, len(edges)))
         some = {*kept}
-        walks.route([link for link in edges if link not in some])
+        try:
+            walks.route([link for link in edges if link not in some], late)
+        except TooLong:
+            if best:
+                break
+            raise
         work -= walks.work
         crossed = len(walks.crossings), -2 * len(kept)
         if best is None or crossed < best[0]:
@@ -43,12 +49,14 @@ def left_out(part: TopologicalMap, world: TopologicalMap) -> list[Link]:
     return [(out, end) for out, end in world.edges() if out not in part.links]
 
 
-def routed(part: TopologicalMap, further: Sequence[Link]) -> tuple[TopologicalMap, list[Place]]:
+def routed(
+    part: TopologicalMap, further: Sequence[Link], late: Late = never
+) -> tuple[TopologicalMap, list[Place]]:
     """A map of genus 0 that has the further links as well, and of it the places that are not
     the map's: each is where a further link crosses a link, and straight through it go both.
-    A link is led through as few faces as can be, one after the other."""
+    A link is led through as few faces as can be, one after the other. Raises TooLong."""
     walks = Walks(part, part.edges())
-    walks.route(further)
+    walks.route(further, late)
     return walks.map(), walks.crossings
 
 
@@ -68,7 +76,9 @@ class Walks:
         self.before: list[int] = []  # the next gateway of the place, counter-clockwise
         for star in world.stars.values():
             first = len(self.before)
-            self.before += [first + len(star) - 1, *range(first, first + len(star) - 1)][: len(star)]
+            self.before += [first + len(star) - 1, *range(first, first + len(star) - 1)][
+                : len(star)
+            ]
         self.twin = [-1] * len(self.names)  # the gateway at the other end
         self.crossings: list[Place] = []
         self.work = self.walks = 0
@@ -135,12 +145,15 @@ class Walks:
                 kept.append((out, end))
         return kept
 
-    def route(self, further: Iterable[Link]) -> None:
-        """Lead further links through the faces, across as few links as can be."""
+    def route(self, further: Iterable[Link], late: Late = never) -> None:
+        """Lead further links through the faces, across as few links as can be. Raises TooLong when
+        it is late."""
         slots = self.world.slots
         half = slots // 2
         right, left = max(1, half // 2), half + max(1, half // 2)
         for out, end in further:
+            if late():
+                raise TooLong
             at, to = self.number[out], self.number[end]
             for gateway in self._crossed(at, to):
                 self.crossings.append(place := f"x{len(self.crossings)}")
