@@ -12,8 +12,7 @@ import numpy as np
 from scipy import sparse
 from scipy.sparse import linalg
 
-from topomap.drawing.mesh import Mesh, Numbers, Points
-from topomap.drawing.plain import TooLong
+from topomap.drawing.mesh import Mesh, Numbers, Points, TooLong
 from topomap.drawing.springs import Springs, Term
 from topomap.model.topology import Gateway, Place, TopologicalMap
 from topomap.runtime.watch import Late, never
@@ -34,7 +33,7 @@ STAGES = (
 ANEW = (100.0, 0.0), (10.0, 0.0)  # before these, if the drawing is not legible
 AGAIN = 2  # times at most, and not in fewer steps
 STEPS = 120  # of the descent, at most, with each weight
-WORK = 600_000  # numbers that all steps of a drawing change, together
+WORK = 600_000  # numbers that all steps changed, together: then a drawing is not begun again
 MOST_POINTS = 20_000  # of a mesh
 LITTLE = 1e-9  # stiffness that leaves none without any
 # A matrix that is positive definite is solved without exchanging rows.
@@ -46,29 +45,24 @@ def bent(
 ) -> dict[Gateway, Points]:
     """Lines with bends, in a drawing in which no triangle of the mesh is folded; they go on
     straight through the crossings. Raises TooLong if the drawing is not legible when the time is
-    over, or the work that is spent on one drawing."""
+    over."""
     mesh = Mesh(world, crossings)
     if mesh.size > MOST_POINTS or late():
         raise TooLong
+    points = mesh.start(late)
     shape = Springs(mesh)
-    points = mesh.start()
     x = np.concatenate([points.ravel(), shape.norths(points)])
     rim = np.concatenate([2 * np.array(mesh.rim), 2 * np.array(mesh.rim) + 1])
     curves = Curvature(shape.fixed, np.setdiff1d(np.arange(len(x)), rim), len(x))
-    left = WORK // len(x)  # steps
     for again in range(AGAIN + 1 if steps >= STEPS else 1):
-        cut = False
-        stages = ANEW * (again > 0) + STAGES
-        for number, (shape.weight, shape.apart) in enumerate(stages):
-            most = min(steps, left // (len(stages) - number))
-            before = curves.solved
-            x, more = _descend(shape, x, curves, most, late)
-            left -= curves.solved - before
-            cut |= more and most < steps
-        if shape.legible(x):
+        for shape.weight, shape.apart in ANEW * (again > 0) + STAGES:
+            x = _descend(shape, x, curves, steps, late)
+        if shape.legible(x) or curves.solved * len(x) > WORK:
             break
-        if late() or (cut and left < len(STAGES)):
+        if late():
             raise TooLong
+    if late() and not shape.legible(x):
+        raise TooLong
     points = x[: 2 * mesh.size].reshape(-1, 2)
     lines = {}
     for start in world.gateways():
@@ -81,11 +75,8 @@ def bent(
     return lines
 
 
-def _descend(
-    shape: Springs, x: Points, curves: "Curvature", steps: int, late: Late
-) -> tuple[Points, bool]:
-    """Numbers of less energy, by Newton's method, the free ones changed; and whether more steps, or
-    more time, would lessen it more. The curvature of each
+def _descend(shape: Springs, x: Points, curves: "Curvature", steps: int, late: Late) -> Points:
+    """Numbers of less energy, by Newton's method, the free ones changed. The curvature of each
     term is taken for no less than nothing; steps go only to where the energy is finite, so that
     what was never folded is not."""
     value, terms = shape(x)
@@ -101,13 +92,13 @@ def _descend(
         while (new := shape(x + length * step))[0] > value + 1e-4 * length * gain:
             length /= 2
             if length < 1e-10:
-                return x, False
+                return x
         idle = idle + 1 if value - new[0] < 1e-4 * (1 + abs(value)) else 0
         x = x + length * step
         value, terms = new
         if idle > 9:
-            return x, False
-    return x, True
+            return x
+    return x
 
 
 class Curvature:

@@ -15,8 +15,8 @@ from scipy import sparse
 from scipy.sparse import linalg
 
 from topomap.drawing.bent import STEPS, bent
-from topomap.drawing.mesh import Points, cross, faces_of
-from topomap.drawing.plain import NOTE, TooLong, plain
+from topomap.drawing.mesh import Points, TooLong, cross, faces_of
+from topomap.drawing.plain import NOTE, plain
 from topomap.drawing.planarize import left_out, planar_part, routed
 from topomap.drawing.springs import STUB
 from topomap.model.topology import Gateway, Place, TopologicalMap
@@ -67,7 +67,7 @@ def layout(
         if lines is None:
             lines = bent(*routed(part, left_out(part, world), late), steps, late)
     except TooLong:
-        lines = plain(world, STUB, late)
+        lines = plain(world, STUB)
         return replace(_turned(world, lines, ahead), note=NOTE)
     return _layout(world, part, lines, ahead)
 

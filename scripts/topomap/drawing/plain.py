@@ -3,15 +3,16 @@ map, and lines straight from one to the other. Lines leave each place in their o
 where they need not."""
 
 import numpy as np
-from scipy import sparse
+from scipy import linalg, sparse
 from scipy.sparse import csgraph
 from scipy.spatial import KDTree
 
 from topomap.drawing.mesh import Points
 from topomap.model.topology import Gateway, TopologicalMap
-from topomap.runtime.watch import Late, never
 
 ROUNDS = 60  # in which places are moved to where their distances are nearer to what they should be
+WORK = 4_000_000  # distances that are looked at in all rounds
+MOST_PLACES = 1500  # that are moved so; more stay on a circle
 NEAREST = 0.6  # that places may be
 PUSHES = 200  # times at most that places are pushed apart
 STEM = 0.3  # the length of a line's first piece
@@ -19,15 +20,11 @@ MOST_TURN = np.pi / 2.4  # between a line's first piece and where it goes; else 
 NOTE = "drawn plainly, as a better drawing takes too long"
 
 
-class TooLong(Exception):
-    """A better drawing would take too long."""
-
-
-def plain(world: TopologicalMap, stub: float, late: Late = never) -> dict[Gateway, Points]:
+def plain(world: TopologicalMap, stub: float) -> dict[Gateway, Points]:
     """The lines of a map of one component; of a place without gateways there are none."""
     number = {place: n for n, place in enumerate(world.stars)}
     pairs = [(number[p], number[q]) for (p, _), (q, _) in world.edges() if p != q]
-    points = _points(len(number), pairs, late)
+    points = _points(len(number), pairs)
     ends = [(number[p], number[world.links[p, s][0]], s) for p, s in world.links if (p, s)]
     norths = _norths(points, [end for end in ends if end[0] != end[1]], world.slots)
     turn = 2 * np.pi / world.slots
@@ -80,12 +77,12 @@ def _norths(points: Points, ends: list[tuple[int, int, int]], slots: int) -> Poi
     return np.asarray(np.arctan2(y, x))
 
 
-def _points(many: int, pairs: list[tuple[int, int]], late: Late) -> Points:
+def _points(many: int, pairs: list[tuple[int, int]]) -> Points:
     """Points whose distances are about the numbers of links between them, by stress majorization
-    (Gansner, Koren and North 2004), from a circle on; none are closer together than is legible."""
+    (Gansner, Koren and North 2004); or points on a circle. None are too close to each other."""
     turn = 2 * np.pi * np.arange(many) / many
     circle = max(1, many * NEAREST / 5) * np.stack([np.cos(turn), np.sin(turn)], 1)
-    if many < 3 or late():
+    if many < 3 or many > MOST_PLACES:
         return circle
     one, other = np.array(pairs).T
     near = sparse.coo_matrix((np.ones(len(one)), (one, other)), (many, many)).tocsr()
@@ -96,9 +93,7 @@ def _points(many: int, pairs: list[tuple[int, int]], late: Late) -> Points:
     np.fill_diagonal(weight, 0)
     total = np.diag(weight.sum(1) + 1) - weight
     factor = np.linalg.inv(total)
-    for _ in range(ROUNDS):
-        if late():
-            break
+    for _ in range(min(ROUNDS, WORK // many**2)):
         apart = np.hypot(*(points[:, None, axis] - points[None, :, axis] for axis in (0, 1)))
         np.fill_diagonal(apart, 1)
         ratio = weight * far / np.maximum(apart, 1e-3)
@@ -112,9 +107,9 @@ def _scaled(far: Points, many: int) -> Points:
     np.fill_diagonal(squares, 0)
     squares -= squares.mean(0)
     squares -= squares.mean(1)[:, None]
-    values, vectors = np.linalg.eigh(-squares / 2)
-    signs = np.sign(vectors[np.abs(vectors).argmax(0), np.arange(many)])
-    return np.asarray((vectors * signs)[:, -2:] * np.sqrt(np.maximum(values[-2:], 1e-6)))
+    values, vectors = linalg.eigh(-squares / 2, subset_by_index=[many - 2, many - 1])
+    signs = np.sign(vectors[np.abs(vectors).argmax(0), [0, 1]])
+    return np.asarray(vectors * signs * np.sqrt(np.maximum(values, 1e-6)))
 
 
 def _pushed(points: Points, circle: Points) -> Points:

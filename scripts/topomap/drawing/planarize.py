@@ -3,7 +3,7 @@
 import random
 from collections.abc import Iterable, Sequence
 
-from topomap.drawing.plain import TooLong
+from topomap.drawing.mesh import TooLong
 from topomap.model.topology import Gateway, Place, TopologicalMap
 from topomap.runtime import nx
 from topomap.runtime.watch import Late, never
