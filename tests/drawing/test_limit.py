@@ -3,15 +3,19 @@ all maps are found. What is late is told by counting, not by a clock."""
 
 import json
 import random
+import signal
+import subprocess
+import time
 from itertools import combinations, pairwise
 
 import numpy as np
 import pytest
-from conftest import ROOT
+from conftest import BIN, ROOT
 from test_terminal import linked, walk
 from topomap.api import scenes as choice
 from topomap.api.draw import characters, save, svg
 from topomap.api.scenes import scenes_under
+from topomap.cli.scene import SEARCH
 from topomap.documents.answers import map_json
 from topomap.drawing import shapes
 from topomap.drawing.layout import layout, straight
@@ -20,6 +24,7 @@ from topomap.drawing.planarize import LINK_ORDERS, Walks, left_out, planar_part,
 from topomap.model.query import Query
 from topomap.model.topology import TopologicalMap
 from topomap.page import chapter
+from topomap.runtime.limits import DRAWING
 from topomap.runtime.watch import Stopped, Watch
 from topomap.worlds.environment import grid, lattice
 
@@ -222,6 +227,29 @@ def test_what_ends_a_drawing_leaves_the_file_as_it_was(tmp_path):
         characters(scene, 80, False, late=stopped)
     assert file.read_text() == "before"
     assert [one.name for one in tmp_path.iterdir()] == ["map.svg"]
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_an_interrupted_drawing_leaves_no_file(tmp_path, number):
+    scene = walk(grid(8, 8, "torus").map, 2000, random.Random(0))
+    told = map_json(scene.world, tuple(scene.at))
+    file, picture = tmp_path / "torus.json", tmp_path / "map.svg"
+    file.write_text(json.dumps({"instance": "torus", "slots": 4, "maps": [told]}))
+    call = [BIN / "topomap", "draw", file, "--timeout", "600", "-o", picture]
+    with subprocess.Popen(call, stderr=subprocess.PIPE, text=True) as process:
+        while not [*tmp_path.glob(".topomap-*")] and process.poll() is None:
+            time.sleep(0.02)
+        process.send_signal(number)
+        _, said = process.communicate(timeout=60)
+    assert (process.returncode, said) == (130, f"{file}: partial: interrupted\n")
+    assert [one.name for one in tmp_path.iterdir()] == ["torus.json"]
+
+
+def test_the_page_tells_the_limits():
+    told = " ".join((ROOT / "docs/pictures.md").read_text().split())
+    assert f"take {DRAWING:g} seconds at most" in told
+    assert f"more than {choice.MANY}, they are not all looked for" in told
+    assert (NOTE in told, SEARCH, "seven tenths" in told) == (True, 0.7, True)
 
 
 def test_pictures_and_characters_of_a_plain_drawing():

@@ -21,7 +21,7 @@ from topomap.runtime.watch import Watch
 MANY = 1000  # optimal maps; if there are more, they are not all looked for
 # The share of the time for the search of optimal maps; and if none is found then, the share of the
 # rest for that of a closed one, before any map is taken.
-OPTIMAL, CLOSED = 0.7, 0.8
+OPTIMAL, CLOSED = 0.6, 0.6
 
 
 @dataclass(frozen=True)

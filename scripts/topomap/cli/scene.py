@@ -50,8 +50,7 @@ def with_scene(args: argparse.Namespace, show: "Callable[[Scene, Late], str]") -
         return status
     left = max(0.0, args.timeout - (time.monotonic() - begun))
     try:
-        with heeding(left) as watch:
-            watch.title("drawing")
+        with heeding(left, quiet=True) as watch:
             note = show(found[number - 1], watch.late)
     except Stopped as stopped:
         say(f"{source}: partial: {stopped}")

@@ -11,7 +11,7 @@ from topomap.drawing.mesh import Points
 from topomap.model.topology import Gateway, TopologicalMap
 
 ROUNDS = 60  # in which places are moved to where their distances are nearer to what they should be
-WORK = 4_000_000  # distances that are looked at in all rounds
+WORK = 2_000_000  # distances that are looked at in all rounds
 MOST_PLACES = 1500  # that are moved so; more stay on a circle
 NEAREST = 0.6  # that places may be
 PUSHES = 200  # times at most that places are pushed apart
