@@ -1,21 +1,35 @@
 """Reasons none of which can be spared: the unsatisfiable cores that clingo gives, made small,
-and verified by a map that breaks each."""
+and verified by a map that breaks each.
+
+A reason is single, such as ``view(7,1)``: the views after steps 7 and 1 differ, so they are not of
+one place. Or it is gathered: a whole rule, such as ``planarity``, or what is seen after one step,
+such as ``view(7)``. A single reason is in force as long as all gathered ones are of which it is a
+part: ``view(7,1)`` is a part of ``view(7)`` and of ``view(1)``.
+"""
 
 import random
-import re
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import clingo
 
 from topomap.model.experience import DState
-from topomap.questions.reasons import FIRST, RULE_NAMES
+from topomap.questions.reasons import (
+    FIRST,
+    RULE_NAMES,
+    RULES,
+    gathered,
+    is_gathered,
+    kind_of,
+    numbers_of,
+)
 from topomap.runtime.status import INTERRUPT
 from topomap.runtime.watch import Stopped
 from topomap.solver.programs import Program
 from topomap.solver.threads import Put
 
 REASON_ORDERS = 12  # in which reasons are tried, at most
+FEW, FEW_ORDERS = 8, 3  # single reasons that are not gathered; orders in which so few are sought
 CONFLICTS, CALLS = 3_000, 500  # of the solver, until no further order is tried
 TIDYING = 100  # reasons that are tried, so that a map breaks few others
 
@@ -37,6 +51,20 @@ class Given:
         literals = {str(atom.symbol.arguments[0]): -atom.literal for atom in atoms}
         self.literals = {name: literals[name] for name in sorted(literals, key=rank)}
         self.conflicts = self.calls = 0
+        self.name(gather=False)
+
+    def name(self, *, gather: bool) -> None:
+        """Speak from now on of gathered reasons, or of single ones."""
+        self.of = {name: gathered(name) if gather else (name,) for name in self.literals}
+        self.names = sorted({one for names in self.of.values() for one in names}, key=rank)
+        self.conflicts = self.calls = 0
+
+    def in_force(self, names: Sequence[str]) -> list[str]:
+        """The single reasons that are in force as long as these are, in their order, on which
+        it depends what clingo blames."""
+        rank_of = {name: number for number, name in enumerate(names)}
+        kept = [name for name, of in self.of.items() if rank_of.keys() >= {*of}]
+        return sorted(kept, key=lambda name: max(rank_of[one] for one in self.of[name]))
 
     def core(self, names: Sequence[str]) -> list[str] | None:
         """None if there is a map with these in force, else some of them with which there is
@@ -49,23 +77,27 @@ class Given:
         self.conflicts += int(self.control.statistics["solving"]["solvers"]["conflicts"])
         if result.satisfiable:
             return None
-        return [name for name in names if self.literals[name] in set(used)]
+        met = set(used)
+        blamed = {one for name, of in self.of.items() if self.literals[name] in met for one in of}
+        return [name for name in names if name in blamed]
 
     def _assumed(self, names: Sequence[str]) -> list[tuple[clingo.Symbol, bool] | int]:
-        return [*self.assumed, *(self.literals[name] for name in names)]
+        return [*self.assumed, *(self.literals[name] for name in self.in_force(names))]
 
-    def spare(self, names: list[str], kinds: Sequence[str]) -> list[str]:
-        """The reasons but for kinds that can be spared, the last ones first."""
-        for kind in reversed(kinds):
+    def spare(self, names: list[str], demands: bool) -> list[str]:
+        """The reasons but for kinds that can be spared, the last ones first: kinds of what is
+        demanded, or the others."""
+        ranks = {kind_of(name): rank(name)[0] for name in names}
+        for kind in sorted(ranks, key=ranks.__getitem__, reverse=True):
             spared = [name for name in names if kind_of(name) != kind]
-            if len(spared) < len(names) and self.core(spared) is not None:
+            if demands == (ranks[kind] >= FIRST) and self.core(spared) is not None:
                 names = spared
         return names
 
     def broken(self, names: Sequence[str], without: str) -> tuple[clingo.Symbol, ...] | None:
         """What is so in a map with these in force and another one not, and few of all others
         given up; None if there is no such map."""
-        others = [name for name in self.literals if name not in names and name != without]
+        others = [name for name in self.names if name not in names and name != without]
         given_up: list[str] = []
         while (core := self.core([*names, *others])) is not None:
             more = set(core) - set(names)
@@ -88,66 +120,118 @@ class Given:
 
 
 def find_reasons(assumed: Sequence[tuple[clingo.Symbol, bool]], program: Program, put: Put) -> None:
-    """Puts reasons that suffice, fewer and fewer; at last some of which none can be spared."""
+    """Puts single reasons that suffice, fewer and fewer; at last some of which none can be spared.
+    With each it tells that they are not gathered."""
     given = Given(program, assumed)
-    whole = given.spare(list(given.literals), RULE_NAMES[FIRST:])
+    best = _fewest(given, lambda names: put((False, tuple(names))))
+    put((False, tuple(best or ())))
+
+
+def find_few(program: Program, put: Put) -> None:
+    """Puts reasons why there is no map, fewer and fewer, each time with whether they are gathered;
+    at last some of which none can be spared. They are single if a few are found that suffice."""
+    given = Given(program, ())
+    given.name(gather=True)
+    _fewest(given, lambda names: put((True, tuple(names))), orders=1)
+    given.name(gather=False)
+    best = _fewest(given, lambda _: put(None), FEW, FEW_ORDERS)
+    single = best is not None
+    if best is None:
+        given.name(gather=True)
+        best = _fewest(given, lambda names: put((True, tuple(names))))
+    put((not single, tuple(best or ())))
+
+
+def _fewest(
+    given: Given,
+    tell: Callable[[Sequence[str]], bool],
+    most: int | None = None,
+    orders: int = REASON_ORDERS,
+) -> list[str] | None:
+    """Reasons none of which can be spared, tried in several orders: those of the order that leaves
+    the fewest, and of as many those that have the fewest gathered ones of one step.
+
+    Parameters:
+        given: what they are of; without any of them there is a map.
+        tell: is told the reasons of the first order that suffice, and whether to go on.
+        most: how many reasons are wanted at most; an order is left as soon as it is known to
+            need more.
+        orders: how many orders are tried until there are reasons.
+
+    Returns:
+        The reasons; None if each of the orders needs more than are wanted.
+    """
+    whole = given.spare(given.names, demands=True)
     best: list[str] | None = None
     for number in range(REASON_ORDERS):
+        if best is None and number >= orders:
+            return None
         # The fewest kinds are not always the fewest reasons: later orders have all kinds.
-        kept = whole if number else given.spare(whole, RULE_NAMES[:FIRST])
+        kept = whole if number else given.spare(whole, demands=False)
         least = given.core(in_order(kept, number))
         if least is None:
             raise RuntimeError("the maps differ between two encodings")
+        needed: set[str] = set()
         for size in sorted({max(1, len(least) // 8), 1}, reverse=True):  # first many at a time
             tried = in_order(least, number)[::-1]
             for start in range(0, len(tried), size):
-                if best is None and not put(tuple(sorted(least, key=rank))):
-                    return
+                if best is None and not tell(sorted(least, key=rank)):
+                    raise Stopped(INTERRUPT)
                 spared = set(tried[start : start + size]) & set(least)
-                core = (
-                    given.core([name for name in least if name not in spared]) if spared else None
-                )
-                least = least if core is None else core
-        if best is None or len(least) < len(best):
+                if not spared or (most is not None and len(needed) > most):
+                    continue
+                core = given.core([name for name in least if name not in spared])
+                if core is None:
+                    needed |= spared if size == 1 else set()
+                else:
+                    least = core
+        enough = most is None or len(needed) <= most
+        if enough and (best is None or _burden(least) < _burden(best)):
             best = sorted(least, key=rank)
-        if len(best) <= 1 or given.conflicts > CONFLICTS or given.calls > CALLS:
+        spent = given.conflicts > CONFLICTS or given.calls > CALLS
+        if best is not None and (len(best) <= 1 or spent or orders == 1):
             break
-    put(tuple(best or ()))
+    return best
+
+
+def _burden(names: Sequence[str]) -> tuple[int, int]:
+    """How many reasons there are to read; and how many of them are gathered ones of one step."""
+    return len(names), sum(kind_of(name) != name and is_gathered(name) for name in names)
 
 
 def verify(
     assumed: Sequence[tuple[clingo.Symbol, bool]],
+    gather: bool,
     names: Sequence[str],
     program: Program,
     put: Put,
 ) -> None:
-    """Puts each reason with what is so in a map that breaks it, and no other one of them."""
+    """Puts each reason with a map that breaks it, and no other one of them: its dstates, what else
+    it breaks, the single reasons that are broken of this one, and all that is so in the map."""
     given = Given(program, assumed)
+    given.name(gather=gather)
     if given.core(names) is None:
         raise RuntimeError("the reasons do not suffice")
     for name in names:
-        symbols = given.broken([other for other in names if other != name], name)
+        rest = [other for other in names if other != name]
+        symbols = given.broken(rest, name)
         if symbols is None:
             raise RuntimeError(f"{name} is no reason")
-        broken = {str(atom.arguments[0]) for atom in symbols if atom.name == "waived"}
-        also = tuple(sorted(broken - {name}, key=rank))
-        if name not in broken or set(also) & set(names):
+        waived = {str(atom.arguments[0]) for atom in symbols if atom.name == "waived"}
+        breaks = sorted((one for one in waived if name in given.of[one]), key=rank)
+        others = {other for one in waived - {*breaks} for other in given.of[one]} - {*rest}
+        if not breaks or waived & {*given.in_force(rest)}:
             raise RuntimeError(f"{name} is not what it is about")
-        if not put((name, dstates(symbols), also, symbols)):
+        also = tuple(sorted(others, key=rank))
+        if not put((name, dstates(symbols), also, tuple(breaks), symbols)):
             return
-
-
-def kind_of(name: str) -> str:
-    return name.partition("(")[0]
-
-
-def numbers_of(name: str) -> tuple[int, ...]:
-    return tuple(map(int, re.findall(r"\d+", name)))
 
 
 def rank(name: str) -> tuple[int, tuple[int, ...]]:
     """Reasons by kind, and then by their steps."""
-    return RULE_NAMES.index(kind_of(name)), numbers_of(name)
+    kind = kind_of(name)  # or the words of a whole rule
+    first = RULE_NAMES.index(kind) if kind in RULES else [*RULES.values()].index(kind)
+    return first, numbers_of(name)
 
 
 def in_order(names: Sequence[str], number: int) -> list[str]:
