@@ -23,7 +23,8 @@ from topomap.model.experience import DState, Experience
 from topomap.model.found import Found, steps_json
 from topomap.model.query import Query
 from topomap.model.vocabulary import DEMANDS, RELAXING
-from topomap.questions.cores import FEW, dstates, find_few, find_reasons, verify
+from topomap.questions.cores import dstates, find_reasons, verify
+from topomap.questions.few import find_few
 from topomap.questions.reasons import (
     KNOWN,
     RULES,
@@ -47,7 +48,7 @@ from topomap.solver import defaults
 from topomap.solver.programs import Program, calls, forget
 from topomap.solver.threads import Put
 
-MOST_OTHERS = 4  # reasons that a map breaks besides, as told
+MOST_OTHERS, MANY = 4, 8  # that a map breaks besides, as told; reasons, of which a sum is told
 VERDICTS = {
     "impossible": "impossible",
     "certain": "certain",
@@ -117,13 +118,15 @@ class Reason:
 class Explanation:
     """What is found: the verdict, and the reasons for it in the first ``horizon`` steps, or what is
     ``in_the_way`` of a closed map; or maps in which the statement holds and does not.
-    ``gathered``: whether each reason is a whole rule, or all that is told of one step."""
+    ``gathered``: whether reasons are whole rules, or what is told of one step; ``fewest``: whether
+    it is proved that no fewer of these suffice."""
 
     verdict: str | None = None
     horizon: int | None = None
     reasons: list[Reason] = field(default_factory=list)
     minimal: bool = False
     gathered: bool = False
+    fewest: bool = False
     in_the_way: list[str] = field(default_factory=list)
     maps: dict[bool, tuple[DState, ...]] = field(default_factory=dict)
 
@@ -169,8 +172,10 @@ class Explanation:
             return "this one reason is enough"
         kinds = Counter(reason.rule for reason in self.reasons)
         told = ", ".join(f"{times} of {kind}" for kind, times in kinds.most_common())
-        which = f" ({told})" if many > FEW and not self.gathered else ""
-        return f"these {many} reasons{which} are enough, and without any one of them it is not so"
+        which = f" ({told})" if many > MANY and not self.gathered else ""
+        fewest = "; fewer of this sort would not be enough" * self.fewest
+        enough = f"these {many} reasons{which} are enough, and without any one of them it is not so"
+        return enough + fewest
 
     def document(self, statement: Statement | None, query: Query) -> dict[str, Any]:
         """What was found, as JSON."""
@@ -188,6 +193,7 @@ class Explanation:
             "reasons": [reason.document() for reason in self.reasons],
             "minimal": self.minimal or None,
             "gathered": self.gathered,
+            "fewest": self.fewest or None,
             "in_the_way": self.in_the_way,
             "witness": steps_json(maps.get(True, ())),
             "counter": steps_json(maps.get(False, ())),
@@ -308,17 +314,18 @@ class Explainer:
         work = find_few if goal is None else partial(find_reasons, assumed)
         for told in calls(experience, query, facts, self.watch, work):
             if told:
-                self.found.gathered, names = told
+                self.found.gathered, names, self.found.fewest = told
                 self.found.reasons = [self._reason(experience, name) for name in names]
         forget()  # what the solver has learnt: the answer is verified anew
         self.watch.phase("verified")
-        sure = 0
+        reasons = {reason.name: reason for reason in self.found.reasons}
         work = partial(verify, assumed, self.found.gathered, names)
-        for told in calls(experience, query, facts, self.watch, work):
-            self.found.reasons[sure] = self._reason(experience, *told)
-            sure += 1
+        for left, *told in calls(experience, query, facts, self.watch, work):
+            if told:
+                reasons[told[0]] = self._reason(experience, *told)
+            self.found.reasons = [reasons[name] for name in names if name in left]
         forget()
-        if sure != len(names):
+        if not all(reason.at for reason in self.found.reasons):
             raise RuntimeError("the reasons were not verified")
         self.found.minimal = True
 

@@ -353,7 +353,12 @@ def gathered(name: str) -> tuple[str, ...]:
 
 def is_gathered(name: str) -> bool:
     """Whether an answer of gathered reasons has gathered this one, and not left it as it is."""
-    return name in WHOLE or (kind_of(name) in BY_STEP and len(numbers_of(name)) == 1)
+    return name in WHOLE or of_one_step(name)
+
+
+def of_one_step(name: str) -> bool:
+    """Whether it is a gathered reason of what is told of one step."""
+    return kind_of(name) in BY_STEP and len(numbers_of(name)) == 1
 
 
 def told_gathered(experience: Experience, name: str, bound: int | None) -> Told:
