@@ -7,6 +7,7 @@ such as ``view(7)``. A single reason is in force as long as all gathered ones ar
 part: ``view(7,1)`` is a part of ``view(7)`` and of ``view(1)``.
 """
 
+import math
 import random
 from collections.abc import Callable, Sequence
 from contextlib import suppress
@@ -97,15 +98,19 @@ class Given:
         blamed = {one for name, of in self.of.items() if self.literals[name] in met for one in of}
         return [name for name in names if name in blamed]
 
-    def grown(self, names: Sequence[str], without: str | None = None) -> list[str]:
-        """Of reasons with which there is a map, that of the last call, these and all others that a
-        map allows, too, but for one; each is tried with few conflicts."""
-        kept = list(names)
+    def grown(
+        self, names: Sequence[str], without: str | None = None, most: float = math.inf
+    ) -> list[str]:
+        """Of reasons with which there is a map, that of the last call, these and others that a map
+        allows, too, but for one. Each is tried with few conflicts, and none after so many."""
+        kept, end = list(names), self.conflicts + most
         for name in self.names:
             if name in kept or name == without:
                 continue
             try:
                 if self.waived & {*self.in_force([*kept, name])}:
+                    if self.conflicts > end:
+                        continue
                     before = self.waived
                     if self.core([*kept, name], GROWING) is not None:
                         self.waived = before
@@ -133,7 +138,7 @@ class Given:
         """What is so in a map with these in force, with which there is one, as the last call told,
         and another one not, and few of all others given up."""
         if self.gather:
-            return self._model(self.grown(names, without))
+            return self._model(self.grown(names, without, GROWING))
         others = [name for name in self.names if name not in names and name != without]
         given_up: list[str] = []
         while (core := self.core([*names, *others])) is not None:

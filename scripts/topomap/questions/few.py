@@ -15,7 +15,7 @@ from topomap.questions.reasons import of_one_step
 from topomap.solver.programs import Program
 from topomap.solver.threads import Put
 
-MOST = 8  # single reasons; if more are needed, they are gathered
+MOST = 5  # single reasons; if more are needed, they are gathered
 ORDERS, TRYING = 2, 100  # in which reasons are tried; conflicts of the solver to try one
 # Of the solver, until the fewest reasons are no longer sought: conflicts times rules, as they take
 # the longer the more rules there are; and calls.
