@@ -20,7 +20,7 @@ PARTS = [
     ("boundary",), ("planar", "boundary"),
 ]  # fmt: skip
 LATE = {"closed", "travelled"}
-LIMIT = 40_000  # reasons that are held against beginnings of assignments, until it is left open
+LIMIT = 20_000  # reasons that are held against beginnings of assignments, until it is left open
 
 
 def candidate(draw: random.Random, most: int) -> tuple[Experience, tuple[str, ...], int | None]:

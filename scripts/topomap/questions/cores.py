@@ -31,6 +31,7 @@ from topomap.solver.programs import Program
 from topomap.solver.threads import Put
 
 REASON_ORDERS = 12  # in which reasons are tried, at most
+NEAR = -1  # the order in which reasons whose steps are near to each other are spared last
 CONFLICTS, CALLS = 3_000, 500  # of the solver, until no further order is tried
 TIDYING = 100  # reasons that are tried, so that a map breaks few others
 GROWING = 60  # conflicts, for each gathered reason that is tried so that a map breaks few others
@@ -177,8 +178,9 @@ def reduced(
     given: Given,
     tell: Callable[[Sequence[str]], bool],
     most: int | None = None,
-    orders: int = REASON_ORDERS,
+    orders: Sequence[int] = range(REASON_ORDERS),
     limit: int | None = None,
+    names: Sequence[str] | None = None,
 ) -> list[str] | None:
     """Reasons none of which can be spared, tried in several orders: those of the order that leaves
     the fewest, and of as many those that have the fewest gathered ones of one step.
@@ -188,17 +190,19 @@ def reduced(
         tell: is told the reasons of the first order that suffice, and whether to go on.
         most: how many reasons are wanted at most; an order is left as soon as it is known to
             need more.
-        orders: how many orders are tried.
+        orders: the numbers of the orders that are tried.
         limit: of the conflicts with which a reason is tried; where they are not enough, it is left
             to ``verify`` whether it can be spared.
+        names: of which they are; without it all.
 
     Returns:
         The reasons; None if each of the orders needs more than are wanted.
     """
-    whole = given.spare(given.names, demands=True, limit=limit)
+    names = given.names if names is None else names
+    whole = given.spare(list(names), demands=True, limit=limit)
     best: list[str] | None = None
-    for number in range(orders):
-        # The fewest kinds are not always the fewest reasons: later orders have all kinds.
+    for number in orders:
+        # The fewest kinds are not always the fewest reasons: other orders have all kinds.
         kept = whole if number else given.spare(whole, demands=False, limit=limit)
         least = given.core(in_order(kept, number))
         if least is None:
@@ -279,8 +283,16 @@ def rank(name: str) -> tuple[int, tuple[int, ...]]:
     return first, numbers_of(name)
 
 
+def _span(name: str) -> int:
+    """How far apart the steps of a reason are."""
+    numbers = numbers_of(name)
+    return max(numbers) - min(numbers) if numbers else 0
+
+
 def in_order(names: Sequence[str], number: int) -> list[str]:
     """The reasons in one of several orders: those that come last are spared first."""
+    if number == NEAR:
+        return sorted(names, key=lambda name: (_span(name), rank(name)))
     if number <= 1:
         return sorted(names, key=lambda name: (max(numbers_of(name), default=0), rank(name)))
     if number == 2:

@@ -10,13 +10,16 @@ from collections.abc import Sequence
 
 import clingo
 
-from topomap.questions.cores import Given, Unsettled, rank, reduced
+from topomap.questions.cores import NEAR, Given, Unsettled, rank, reduced
 from topomap.questions.reasons import of_one_step
 from topomap.solver.programs import Program
 from topomap.solver.threads import Put
 
-MOST = 5  # single reasons; if more are needed, they are gathered
-ORDERS, TRYING = 2, 100  # in which reasons are tried; conflicts of the solver to try one
+MOST = 5  # single reasons; if more are needed, and fewer gathered ones, these are told
+# Orders in which single reasons are tried, those that are parts of gathered ones, and gathered ones;
+# and conflicts of the solver to try one.
+ORDERS, PARTS, GATHERED = (NEAR, 0, 2), (NEAR, 0, 2, 3, 4, 5), (0, 1)
+TRYING = 100
 # Of the solver, until the fewest reasons are no longer sought: conflicts times rules, as they take
 # the longer the more rules there are; and calls.
 WORK, CALLS = 4_000_000, 400
@@ -44,10 +47,16 @@ def find_few(program: Program, put: Put) -> None:
         def tell(names: Sequence[str]) -> bool:
             return put((True, tuple(names), False))
 
-        reasons = reduced(given, tell, orders=ORDERS, limit=TRYING) or []
+        reasons = reduced(given, tell, orders=GATHERED, limit=TRYING) or []
     else:
         reasons = fewest
     put((True, tuple(sorted(reasons, key=rank)), fewest is not None))
+    parts = given.in_force(reasons)
+    given.name(gather=False)
+    most = max(MOST, len(reasons))
+    single = reduced(given, lambda _: put(None), most, PARTS, TRYING, parts)
+    if single is not None:
+        put((False, tuple(sorted(single, key=rank)), False))
 
 
 class _Meeting:
