@@ -16,8 +16,8 @@ from topomap.solver.programs import Program
 from topomap.solver.threads import Put
 
 MOST = 5  # single reasons; if more are needed, and fewer gathered ones, these are told
-# Orders in which single reasons are tried, those that are parts of gathered ones, and gathered ones;
-# and conflicts of the solver to try one.
+# Orders in which single reasons are tried, those that are parts of gathered ones, and gathered
+# ones; and conflicts of the solver to try one.
 ORDERS, PARTS, GATHERED = (NEAR, 0, 2), (NEAR, 0, 2, 3, 4, 5), (0, 1)
 TRYING = 100
 # Of the solver, until the fewest reasons are no longer sought: conflicts times rules, as they take
