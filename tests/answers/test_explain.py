@@ -408,7 +408,8 @@ def gathered_of(name, experience):
 
 
 def test_a_walk_of_thirteen_steps_without_a_map(tmp_path):
-    """A few reasons, and stock clingo says that they are enough, and no fewer."""
+    """Stock clingo says that the few reasons are enough; that no two reasons are; and that random
+    sets of one reason fewer are not."""
     seen = read(ROOT / "tests/cases/no-map-13-steps.lp")
     parts = ["planar", "perpendicular", "travelled"]
     status, answer = explained(tmp_path, seen, *call(None, parts, None))
@@ -435,8 +436,8 @@ def test_a_walk_of_thirteen_steps_without_a_map(tmp_path):
 
     assert enough(names)
     every = sorted(set().union(*parts_of.values()))
-    assert not any(map(enough, combinations(every, 3)))
-    fewer = random.Random("fewer").sample([*combinations(every, len(names) - 1)], 400)
+    assert not any(map(enough, combinations(every, 2)))
+    fewer = random.Random("fewer").sample([*combinations(every, len(names) - 1)], 80)
     assert not any(map(enough, fewer))
 
 
