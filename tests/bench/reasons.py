@@ -14,6 +14,7 @@ import statistics
 import subprocess
 import sys
 import tempfile
+import textwrap
 import time
 from collections.abc import Iterator
 from pathlib import Path
@@ -122,9 +123,10 @@ def table(rows: list[dict[str, Any]], passed: int) -> str:
         f"to be tried, or a map in which a gateway has two links, of which planarity and the sides "
         f"of paths are not defined. {passed} more walks were passed over: a default stands in the "
         f"way of a closed map, and that is said instead of reasons. A yardstick is the time of "
-        f"`{YARDSTICK}`, measured after each command.\n"
+        f"`{YARDSTICK}`, measured after each command."
     )
-    return text + "\n" + "\n".join(lines) + "\n"
+    wrapped = textwrap.fill(text, 120, break_on_hyphens=False)
+    return wrapped + "\n\n" + "\n".join(lines) + "\n"
 
 
 def main() -> int:
