@@ -18,7 +18,7 @@ from oracles.mapless import Held, candidate, wrong
 from oracles.worlds import random_experience
 from topomap import cli
 from topomap.model.facts import parse, read
-from topomap.questions.reasons import RULE_NAMES, told_marker
+from topomap.questions.reasons import RULE_NAMES, gathered, told_gathered, told_marker
 
 MOST = 2500  # assignments that are tried by brute force
 LASTING = ("same", "at")
@@ -439,6 +439,19 @@ def test_a_walk_of_thirteen_steps_without_a_map(tmp_path):
     assert not any(map(enough, combinations(every, 2)))
     fewer = random.Random("fewer").sample([*combinations(every, len(names) - 1)], 80)
     assert not any(map(enough, fewer))
+
+
+def test_what_is_told_of_one_step_is_gathered():
+    ring = replace(EXPERIENCES["round"], compass=(), lengths=())
+    steps = ring.steps
+    ring = replace(ring, compass=[0] * (steps + 1), lengths=[7] * steps)
+    assert gathered("compass(1,3)") == ("compass(1)", "compass(3)")
+    assert gathered("same(1,3)") == ("same(1,3)",)
+    assert gathered("itself(3)") == gathered("schema(1,3)") == ("schema",)
+    assert "to compass slot 0 after step 1" in told_gathered(ring, "compass(1)", None).words
+    assert told_gathered(ring, "length(2)", None).words == "step 2 is 7 long"
+    assert told_gathered(ring, "bound", 3).words == "there are at most 3 places"
+    assert told_gathered(ring, "view(1)", None).steps == (1,)
 
 
 @pytest.mark.parametrize("cases", [7, pytest.param(200, marks=pytest.mark.long)])
