@@ -15,7 +15,7 @@ from topomap.questions.records import Record
 from topomap.runtime.checks import collection, flag, integer, seconds, whole, whole_if_given
 from topomap.runtime.limits import DRIFT, MOST_COUNTED, STRETCH
 from topomap.runtime.watch import Watch
-from topomap.solver.online import Certain
+from topomap.search.certainty import Certain
 
 
 class FollowerStatus:
@@ -224,7 +224,7 @@ class Follower:
 
     def status(self, watch: Watch | None = None) -> FollowerStatus:
         """What is known now. Raises ValueError before the first step."""
-        if not self.record.whole():
+        if self._following.solver is None:
             raise ValueError("no step as yet")
         return FollowerStatus(self._following.answer(watch or Watch(self._timeout)))
 

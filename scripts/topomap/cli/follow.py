@@ -138,7 +138,7 @@ def _replay(args: argparse.Namespace, follower: "Follower", log: "Log") -> int:
     begun = time.monotonic()
     for _ in follower.take(record):
         pass
-    return _tell(args, follower, begun, DONE) if record.whole() else DONE
+    return _tell(args, follower, begun, DONE) if follower.record.whole() else DONE
 
 
 def _tell(args: argparse.Namespace, follower: "Follower", begun: float, before: int) -> int:
