@@ -8,7 +8,7 @@ from typing import Any
 from topomap.documents.answers import line_of
 from topomap.model import words
 from topomap.model.experience import Experience, Step
-from topomap.model.found import steps_json
+from topomap.model.found import UNPROVED, steps_json
 from topomap.model.growing import Growing
 from topomap.questions.explore import LIMITS, Plan, plan
 from topomap.questions.records import Record
@@ -71,7 +71,10 @@ class StepAnswer:
             yield f"  map {which}: {line_of(one.sizes, earlier + way)}"
             for exception in one.exceptions:
                 yield f"    {exception.words}"
-        if status.kind:
+        if status.kind == UNPROVED:
+            count = words.number(len(status.maps), "map")
+            yield f"  {count}, {UNPROVED}, cost {' '.join(map(str, status.cost))}"
+        elif status.kind:
             count = words.number(len(status.maps), f"{status.kind} map")
             many = "" if status.all_best else "more than "
             yield f"  {many}{count}, cost {' '.join(map(str, status.cost))}"

@@ -2,9 +2,13 @@
 and what is certain.
 
 While few hypotheses live, all of them are kept, each with its map, and a step enters the children
-of each (``search/living.py``): what that costs does not grow with the log. Where there are more
-than LIVING, clingo takes over (``stepwise.py``), until they have become few again. Both give the
-same answers.
+of each (``search/living.py``): what that costs does not grow with the log. Where there are too many
+(LIVING), clingo takes over (``stepwise.py``), until they have become few again. Both give the same
+answers.
+
+But clingo's program grows with each step. Where it is too large, too (MOST_ATOMS), only SOME of the
+hypotheses are kept, those with the fewest paths and places: then little is proved, and the answers
+are partial, but a step costs no more than before.
 """
 
 from collections.abc import Sequence
@@ -14,6 +18,7 @@ from functools import cached_property
 from topomap.model.compact import CompactMap, Numbering
 from topomap.model.exceptions import NamedException, exceptions_of
 from topomap.model.experience import DState, Experience, Step
+from topomap.model.found import UNPROVED
 from topomap.runtime.limits import DRIFT, MOST_COUNTED, STRETCH
 from topomap.runtime.watch import Attempt, Watch
 from topomap.search.certainty import Certain, Certainty
@@ -21,9 +26,12 @@ from topomap.search.hypothesis import OFTEN
 from topomap.search.living import Living, Told, Tree
 from topomap.solver.stepwise import MAPS, Stepwise
 
-LIVING = 2_000  # hypotheses of which each is kept with its map
+LIVING = 200_000  # places of all the hypotheses together, each of which is kept with its map
 FEWER = 4  # times fewer than these there are to be, before clingo is asked no longer
-KEPT = 500  # hypotheses of earlier steps that are kept, to be there when steps are taken back
+MOST_ATOMS = 60_000  # ground atoms of clingo's program; if it has more, it is not asked any more
+SOME = 20_000  # places of the hypotheses that are kept then
+KEPT, KEPT_STEPS = 5_000, 500  # hypotheses, and steps, that are kept for when steps are taken back
+TOO_MANY = "too many hypotheses"  # why an answer is partial where only some are kept
 
 __all__ = ["Certain", "LivingMap", "OnlineSolver", "ReadMap", "Status"]
 
@@ -129,16 +137,20 @@ class OnlineSolver:
         tolerance: int = 0,
         path_axiom: bool = True,
         living: int = LIVING,
+        most_atoms: int = MOST_ATOMS,
     ):
         """Begin where the first view was seen; ``drift`` and ``stretch`` tell, in percent, how far
-        shifts and lengths may be wrong, and ``tolerance``, in slots, how far bearings may be. Of
-        more than ``living`` hypotheses clingo is asked, from the start if that is 0."""
+        shifts and lengths may be wrong, and ``tolerance``, in slots, how far bearings may be. If
+        the hypotheses have more than ``living`` places, clingo is asked (from the start, if that is
+        0), until its program has more than ``most_atoms`` atoms."""
         self.told = Told(slots, first, drift, stretch, tolerance)
-        self.most, self._living = most, living
+        self.most, self._living, self._most_atoms = most, living, most_atoms
         self._asked = planar, bound, most, drift, stretch, tolerance, path_axiom
         self._tree = Tree(self.told, planar, bound, path_axiom)
         self._rules: Stepwise | None = None
         self._searching = living > 0
+        self._large: int | None = None  # the step after which clingo's program was too large
+        self._some = False  # whether only some of the hypotheses are kept
         self._certainty = Certainty(self.told)
         self._experience: Experience | None = None
         self._begin()
@@ -148,6 +160,7 @@ class OnlineSolver:
         self._none: int | None = None
         self._level = [self._tree.root()]
         self._done = 0  # the step after which these are the hypotheses
+        self._whole = 0, self._level  # the last step of which all hypotheses were kept
         self._kept = {0: self._level}
         self._many_kept = 1
         self._certainty.step(self._level, False)
@@ -179,13 +192,20 @@ class OnlineSolver:
             self._rules.undo(self._rules.experience.steps - last)
         if self._none is not None and last < self._none:
             self._none = None
+        if self._some and self._large is not None and last < self._large:
+            self._some, self._searching, self._large = False, self._living > 0, None
+            self._done = last + 1  # and so they are found again
         if last >= self._done:
             return
         for step in [step for step in self._kept if step > last]:
             self._many_kept -= len(self._kept.pop(step))
-        if self._searching and last in self._kept:
+        if (self._searching or self._some) and last in self._kept:
             self._level, self._done = self._kept[last], last
-            self._certainty.undo(self._level, last)
+            if not self._some:
+                self._certainty.undo(self._level, last)
+                self._whole = last, self._level
+        elif self._some:
+            self._done, self._level = self._whole
         else:  # what they were is found again, when it is asked for
             origin = self._certainty.origin
             self._certainty = Certainty(self.told)
@@ -196,10 +216,9 @@ class OnlineSolver:
         """What is known now; at the time limit, what is known until then."""
         known = Status(self.told.last)
         with Attempt() as attempt:
-            self._advance(watch)
-            if self._searching:
-                return self._status(watch)
-            rules = self._stepwise(watch)
+            rules = self._program(watch)
+            if rules is None:
+                return self._partial(watch) if self._some else self._status(watch)
             kind, cost, best = rules.best(watch)
             maps = tuple(ReadMap(self.experience, at) for at in best[:MAPS])
             every = len(best) <= MAPS
@@ -215,9 +234,11 @@ class OnlineSolver:
     def count(self, watch: Watch) -> tuple[int, bool]:
         """How many hypotheses there are, and true; or a number that they are more than (-1 if
         none was found as yet), and false."""
-        self._advance(watch)
-        if not self._searching:
-            return self._stepwise(watch).count(watch)
+        rules = self._program(watch)
+        if rules is not None:
+            return rules.count(watch)
+        if self._some:
+            return min(len(self._level) - 1, self.most), False
         if self._none is not None:
             return 0, True
         return min(len(self._level), self.most), len(self._level) <= self.most
@@ -225,32 +246,41 @@ class OnlineSolver:
     def _advance(self, watch: Watch) -> None:
         """Find the hypotheses after the last step by search, unless they are too many."""
         tree = self._tree
-        while self._searching and self._none is None and self._done < self.told.last:
+        while self._none is None and self._done < self.told.last:
+            if not self._searching and not self._some:
+                return
             level: list[Living] = []
-            plain = True
+            plain, places = True, 0
             for number, one in enumerate(self._level):
                 if number % OFTEN == 0:
                     watch.tick()
                 children = tree.children(one)
                 plain &= len(children) == 1
-                level += [tree.enter(one, arrival) for arrival in children]
-                if len(level) > self._living:
+                for arrival in children:
+                    level.append(tree.enter(one, arrival))
+                    places += len(level[-1].form.number)
+                if places > self._living and not self._some:
                     self._searching = False
                     return
-            if level:
+            if self._some and places > SOME:
+                level = _simplest(level)
+            if level or self._some:
                 self._done += 1
                 self._level = level
-                self._certainty.step(level, plain)
+                if not self._some:
+                    self._certainty.step(level, plain)
+                    self._whole = self._done, level
                 self._keep()
             else:
                 self._none = self._done + 1
 
     def _keep(self) -> None:
         """Keep the hypotheses after this step for when later ones are taken back."""
-        self._kept[self._done] = self._level
+        kept = self._kept
+        kept[self._done] = self._level
         self._many_kept += len(self._level)
-        while self._many_kept > KEPT and len(self._kept) > 1:
-            self._many_kept -= len(self._kept.pop(next(iter(self._kept))))
+        while len(kept) > 1 and (self._many_kept > KEPT or len(kept) > KEPT_STEPS):
+            self._many_kept -= len(kept.pop(next(iter(kept))))
 
     def _status(self, watch: Watch) -> Status:
         """The status, where the hypotheses are at hand."""
@@ -264,6 +294,16 @@ class OnlineSolver:
             maps = tuple(LivingMap(one, self.told) for one in best[:MAPS])
             known = replace(known, kind=kind, cost=cost, maps=maps, all_best=len(best) <= MAPS)
         return replace(known, fault=attempt.fault)
+
+    def _partial(self, watch: Watch) -> Status:
+        """The status, where only some of the hypotheses are at hand."""
+        known = Status(self.told.last, fault=TOO_MANY)
+        if not self._level:
+            return known
+        number, exact = self.count(watch)
+        _, cost, best = self._best(watch)
+        maps = tuple(LivingMap(one, self.told) for one in best[:MAPS])
+        return replace(known, hypotheses=number, exact=exact, kind=UNPROVED, cost=cost, maps=maps)
 
     def _best(self, watch: Watch) -> tuple[str, tuple[int, ...], list[Living]]:
         """The best maps: of what kind they are, and their cost."""
@@ -286,34 +326,64 @@ class OnlineSolver:
                 break
         return "optimal" if closed else "best so far", least, best
 
-    def _stepwise(self, watch: Watch) -> Stepwise:
-        """The program, which knows all steps."""
+    def _program(self, watch: Watch) -> Stepwise | None:
+        """The program, where clingo is to be asked; it knows all steps. None, if the hypotheses
+        after the last step are at hand, or some of them."""
+        self._advance(watch)
         told = self.told
+        if self._searching or self._some:
+            return None
         if self._rules is None:
             self._rules = Stepwise(told.slots, told.steps[0], *self._asked)
+            self._rules.begin([tuple(one.visit.gateways()) for one in self._whole[1]])
         rules = self._rules
-        if rules.experience.steps < told.last:
-            while rules.experience.steps < told.last:
-                watch.tick()
-                rules.step(told.steps[rules.experience.steps + 1])
-        return rules
+        while rules.size <= self._most_atoms:
+            if rules.experience.steps == told.last:
+                return rules
+            watch.tick()
+            rules.step(told.steps[rules.experience.steps + 1])
+        self._rules, self._some, self._large = None, True, told.last
+        self._done, self._level = self._whole
+        self._advance(watch)
+        return None
 
     def _return(self, rules: Stepwise, watch: Watch) -> None:
         """Go on by search, if clingo's hypotheses have become few."""
-        found = rules.level
-        if found is None or len(found) * FEWER > self._living:
+        found, slots = rules.level, self.told.slots
+        if found is None:
+            return
+        places = sum(gateway == step * slots for at in found for step, gateway in enumerate(at))
+        if places * FEWER > self._living:
             return
         level: list[Living] = []
         way = [self._tree.root()]  # to the hypothesis before
+        before: tuple[int, ...] = (0,)
         for number, at in enumerate(sorted(found)):
             if number % OFTEN == 0:
                 watch.tick()
-            while tuple(one.visit.gateway for one in way) != at[: len(way)]:
-                way.pop()
-            for arrival in at[len(way) :]:
+            pairs = enumerate(zip(before, at, strict=False))
+            common = next((step for step, (one, other) in pairs if one != other), len(before))
+            del way[common:]
+            for arrival in at[common:]:
                 way.append(self._tree.enter(way[-1], arrival))
             level.append(way[-1])
+            before = at
         self._level, self._done, self._none = level, self.told.last, None
         self._kept, self._many_kept = {self._done: level}, len(level)
+        self._whole = self._done, level
         self._certainty.begin(level, self._done)
         self._searching = True
+
+
+def _simplest(level: Sequence[Living]) -> list[Living]:
+    """Those hypotheses with the fewest paths, then the fewest places, that have SOME places at
+    most, in their order."""
+    order = sorted(range(len(level)), key=lambda number: level[number].form.cost)
+    places = 0
+    chosen: list[int] = []
+    for number in order:
+        places += len(level[number].form.number)
+        if places > SOME and chosen:
+            break
+        chosen.append(number)
+    return [level[number] for number in sorted(chosen)]

@@ -93,6 +93,11 @@ class Stepwise:
         """The ground rules so far."""
         return int(self._control.statistics["problem"]["lp"]["rules"])
 
+    @property
+    def size(self) -> int:
+        """How large the program is: the ground atoms so far."""
+        return len(self._control.symbolic_atoms)
+
     def step(self, step: Step) -> None:
         """Go a step on. The caller has seen to it that the turn leads to a gateway, and the marker
         is not out twice."""
