@@ -28,7 +28,7 @@ from topomap.solver.stepwise import MAPS, Stepwise
 
 LIVING = 200_000  # places of all the hypotheses together, each of which is kept with its map
 FEWER = 4  # times fewer than these there are to be, before clingo is asked no longer
-MOST_ATOMS = 60_000  # ground atoms of clingo's program; if it has more, it is not asked any more
+MOST_ATOMS = 30_000  # ground atoms of clingo's program; if it has more, it is not asked any more
 SOME = 20_000  # places of the hypotheses that are kept then
 KEPT, KEPT_STEPS = 5_000, 500  # hypotheses, and steps, that are kept for when steps are taken back
 TOO_MANY = "too many hypotheses"  # why an answer is partial where only some are kept
@@ -176,6 +176,11 @@ class OnlineSolver:
     def rules(self) -> int:
         """The ground rules so far; 0 if clingo was not asked."""
         return 0 if self._rules is None else self._rules.rules
+
+    @property
+    def searching(self) -> bool:
+        """Whether the hypotheses after the last answer were found by search, and are all kept."""
+        return self._searching
 
     def step(self, step: Step) -> None:
         """Go a step on. The caller has seen to it that the turn leads to a gateway, and the marker
