@@ -95,6 +95,12 @@ def _pairs(parts: Sequence[Part]) -> Iterator[Same]:
         visits, size = parts[0]
         yield from combinations(visits[:size], 2)
         return
+    (visits, size), *rest = parts
+    if len(rest) == 1 and rest[0][1] == 1 and visits[size - 1] < rest[0][0][0]:  # most are so
+        last = rest[0][0][0]
+        for visit in islice(visits, size):
+            yield visit, last
+        return
     numbered = enumerate(parts)
     each = heapq.merge(
         *([(v, number) for v in visits[:size]] for number, (visits, size) in numbered)
