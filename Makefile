@@ -8,6 +8,7 @@
 #                 docs/{online,asking,start,solve,logs}.md (two hours;
 #                 BENCH: options, such as BENCH='--only 8x8', BENCH=--quick, BENCH=--help)
 # make figures    draw the pictures of the pages again, docs/figures/
+# make reasons    count the reasons of explain where there is no map, in docs/questions.md (minutes)
 # make knowledge  count what a compass and odometry leave, docs/knowledge.md and its picture (an hour)
 # make simulate   let robots explore 21 worlds, docs/simulations.json (seconds)
 # make circumscription   compare both readings of the preference, docs/circumscription.md
@@ -28,7 +29,7 @@ MAKERS  := $(wildcard scripts/topomap/worlds/*.py) $(addprefix scripts/topomap/m
 PIP     := $(BIN)/python -m pip --quiet --disable-pip-version-check
 
 .PHONY: all table instances batch test test-long mutate lint figures bench beyond circumscription simulate \
-        knowledge clean \
+        knowledge reasons clean \
         committed anew
 .DELETE_ON_ERROR:
 
@@ -116,6 +117,9 @@ beyond: $(SETUP)
 
 knowledge: $(TOOLS)
 	PYTHONPATH=tests $(BIN)/python -m bench.knowledge
+
+reasons: $(TOOLS)
+	PYTHONPATH=tests $(BIN)/python -m bench.reasons
 
 simulate: $(SETUP)
 	$(BIN)/topomap simulate list instances/worlds.txt --json --output docs/simulations.json

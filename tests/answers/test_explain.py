@@ -7,17 +7,18 @@ import json
 import random
 import re
 from dataclasses import replace
-from itertools import pairwise
+from itertools import combinations, pairwise
 
 import clingo
 import pytest
 from conftest import ENCODINGS, ROOT, Truth, run
 from oracles.broken_rules import Assignment, assignments, reasons
 from oracles.known_answers import EXPERIENCES
+from oracles.mapless import Held, candidate, wrong
 from oracles.worlds import random_experience
 from topomap import cli
 from topomap.model.facts import parse, read
-from topomap.questions.reasons import RULE_NAMES, told_marker
+from topomap.questions.reasons import RULE_NAMES, gathered, told_gathered, told_marker
 
 MOST = 2500  # assignments that are tried by brute force
 LASTING = ("same", "at")
@@ -206,6 +207,15 @@ def demand_reasons(experience, answer, wanted, bound):
     assert alone == {*names}
 
 
+def demand_gathered(experience, answer, bound):
+    """There is no map, and each reason, a whole rule or what is seen after a step, is broken in a
+    map that breaks no other one."""
+    assert answer["verdict"] == "no map"
+    assert wrong(experience, answer, bound) in (None, "open")
+    names = [one["reason"] for one in answer["reasons"]]
+    assert Held(experience, bound).suffice(names) is not False
+
+
 # Each of the long runs must end in time on a slow machine, too.
 LONG = [pytest.param(first, first + 220, marks=pytest.mark.long) for first in range(20, 1120, 220)]
 
@@ -249,15 +259,18 @@ def test_verdicts_and_reasons(tmp_path, first, end, record_property):
         if answer["note"] and verdict != "no map":  # it was seen that it cannot be
             assert not names, where
             continue
-        demand_words(cut, answer)
         kinds |= {name.partition("(")[0] for name in names}
+        if answer["gathered"]:
+            demand_gathered(cut, answer, bound)
+            continue
+        demand_words(cut, answer)
         if number_of_assignments(cut) <= MOST * (4 if long else 1) and "boundary" not in parts:
             tried += 1
             demand_reasons(cut, answer, wanted, bound)
     assert {*verdicts, "open"} == {"no map", "map", "open", "certain", "impossible"}, verdicts
     assert "open" in verdicts or not long  # few of the small ones are
     assert tried > (end - first) / 6
-    assert kinds >= {"view", "unification", "schema"}
+    assert kinds >= {"view", "unification", *["schema"] * long}
     record_property("explanations held against all assignments", tried)
 
 
@@ -287,8 +300,11 @@ def test_verdicts_without_the_path_axiom(tmp_path, cases, record_property):
         if status or (answer["note"] and verdict != "no map"):
             continue
         cut = experience.cut(answer["horizon"])
-        demand_words(cut, answer)
         names = [one["reason"] for one in answer["reasons"]]
+        if answer["gathered"]:
+            assert "path axiom" not in names
+            continue
+        demand_words(cut, answer)
         found = {name.partition("(")[0] for name in names}
         assert reason is None or reason in found
         assert not found & {"twice", "crossed", "circular"}
@@ -311,7 +327,7 @@ CALLS = """
 4x4 10 | linked(1,3,5,3) | --planar        | impossible | crossed planar twice
 4x4 8  | at(8,1,2)       | --perpendicular | impossible | crossed triangle
 4x4 8  | at(8,4,2)       | --boundary      | impossible | boundary
-3x3 5  |                 | --bound 4       | no map     | bound schema twice view
+3x3 5  |                 | --bound 4       | no map     | bound view
 3x3 9  |                 | --travelled     | no map     | travelled view
 3x3 7  |                 | --closed        | no map     | closed view
 """
@@ -336,7 +352,8 @@ def test_words_of_the_grids(tmp_path, line):
     names = [reason["reason"] for reason in answer["reasons"]]
     assert {*kinds.split()} <= {name.partition("(")[0] for name in names}
     cut = experience.cut(answer["horizon"])
-    demand_words(cut, answer)
+    if not answer["gathered"]:
+        demand_words(cut, answer)
     parts = [word.removeprefix("--") for word in options.split() if word.startswith("--")]
     extra = []
     if statement:
@@ -347,7 +364,8 @@ def test_words_of_the_grids(tmp_path, line):
     arguments = ["-c", f"places={numbers[0]}"] if numbers else []
     files = [ROOT / f"encodings/{part}.lp" for part in ("topomap", "explain", "query", *parts)]
     for left_out in [None, *names]:
-        forced = [f":- waived({name})." for name in names if name != left_out]
+        kept = [name for name in names if name != left_out]
+        forced = [f":- waived({name})." for name in Held(cut, None).all_singles(kept)]
         given = tmp_path / "given.lp"
         given.write_text(cut.facts() + "".join([*extra, *forced]))
         done = run("clingo", *files, given, "--opt-mode=ignore", "-q", *arguments)
@@ -378,6 +396,89 @@ def test_stock_clingo_gives_up_the_fewest_reasons(tmp_path):
         if tried == 4:
             break
     assert tried == 4
+
+
+def gathered_of(name, experience):
+    """The gathered reasons that a single one is a part of, by the list of what each stands for."""
+    held = Held(experience, None)
+    whole = ["gateway unification", "schema", "path axiom", "planarity", "perpendicularity"]
+    if name.startswith("view"):
+        return {f"view({step})" for step in re.findall(r"\d+", name)}
+    return {one for one in [*whole, "travelled", "bound"] if name in held.singles(one)}
+
+
+def test_a_walk_of_thirteen_steps_without_a_map(tmp_path):
+    """Stock clingo says that the few reasons are enough; that no two reasons are; and that random
+    sets of one reason fewer are not."""
+    seen = read(ROOT / "tests/cases/no-map-13-steps.lp")
+    parts = ["planar", "perpendicular", "travelled"]
+    status, answer = explained(tmp_path, seen, *call(None, parts, None))
+    names = [one["reason"] for one in answer["reasons"]]
+    assert (status, answer["verdict"], answer["horizon"]) == (0, "no map", 13)
+    assert (answer["minimal"], answer["gathered"], answer["fewest"]) == (True, True, True)
+    assert len(names) <= 8
+    assert wrong(seen, answer, None) in (None, "open")
+    control = clingo.Control(["--opt-mode=ignore"])
+    for file in ("topomap", "explain", *parts):
+        control.load(str(ENCODINGS / f"{file}.lp"))
+    control.add("base", [], seen.facts())
+    control.ground()
+    waived = {
+        str(atom.symbol.arguments[0]): atom.literal
+        for atom in control.symbolic_atoms.by_signature("waived", 1)
+    }
+    parts_of = {name: gathered_of(name, seen) for name in waived}
+    assert all(parts_of.values())
+
+    def enough(kept):
+        forced = [-waived[name] for name, of in parts_of.items() if of <= {*kept}]
+        return control.solve(forced).unsatisfiable
+
+    assert enough(names)
+    every = sorted(set().union(*parts_of.values()))
+    assert not any(map(enough, combinations(every, 2)))
+    fewer = random.Random("fewer").sample([*combinations(every, len(names) - 1)], 80)
+    assert not any(map(enough, fewer))
+
+
+def test_what_is_told_of_one_step_is_gathered():
+    ring = replace(EXPERIENCES["round"], compass=(), lengths=())
+    steps = ring.steps
+    ring = replace(ring, compass=[0] * (steps + 1), lengths=[7] * steps)
+    assert gathered("compass(1,3)") == ("compass(1)", "compass(3)")
+    assert gathered("same(1,3)") == ("same(1,3)",)
+    assert gathered("itself(3)") == gathered("schema(1,3)") == ("schema",)
+    assert "to compass slot 0 after step 1" in told_gathered(ring, "compass(1)", None).words
+    assert told_gathered(ring, "length(2)", None).words == "step 2 is 7 long"
+    assert told_gathered(ring, "bound", 3).words == "there are at most 3 places"
+    assert told_gathered(ring, "view(1)", None).steps == (1,)
+
+
+@pytest.mark.parametrize("cases", [7, pytest.param(200, marks=pytest.mark.long)])
+def test_reasons_why_there_is_no_map(tmp_path, cases, record_property):
+    """Each is needed, as the definitions of the rules say; they are enough, as all assignments show
+    where these are few; and there are no more than can be read."""
+    found, enough, number = [], 0, 0
+    while len(found) < cases:
+        seen, parts, bound = candidate(random.Random(f"no map {number}"), 6)
+        number += 1
+        status, answer = explained(tmp_path, seen, *call(None, parts, bound))
+        if answer["verdict"] == "map" or answer["in_the_way"]:
+            continue
+        assert (status, answer["verdict"]) == (0, "no map")
+        assert verdict_of(seen, None, parts, bound) == "no map"
+        assert answer["minimal"], number
+        assert wrong(seen, answer, bound) in (None, "open"), number
+        names = [one["reason"] for one in answer["reasons"]]
+        suffice = Held(seen.cut(answer["horizon"]), bound).suffice(names)
+        assert suffice is not False, number
+        enough += suffice is True
+        assert answer["gathered"] or len(names) <= 8
+        assert all(len(one["steps"]) <= 1 for one in answer["reasons"]) or not answer["gathered"]
+        found.append(answer)
+    assert enough > cases / 2
+    assert {answer["gathered"] for answer in found} == {True, False}
+    record_property("reasons why there is no map held against all assignments", enough)
 
 
 NOT_WAIVED = {"pair", "runs_meet_twice", "runs_triangle"}

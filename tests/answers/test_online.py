@@ -8,9 +8,10 @@ import clingo
 import pytest
 from conftest import ENCODINGS, ROOT, TRIED, plain
 from oracles.brute_force import Hypothesis, best, certain, tree
-from oracles.worlds import WORLDS, random_experience, told
+from oracles.worlds import WORLDS, bent, informed, logs, random_experience, told
 from topomap.model.experience import Step
 from topomap.model.facts import read
+from topomap.model.found import UNPROVED
 from topomap.model.query import Query
 from topomap.runtime.watch import Watch
 from topomap.search import traversal
@@ -21,12 +22,16 @@ from topomap.solver.online import Certain, OnlineSolver
 WATCH = Watch()
 
 
-def begun(experience, planar=False, bound=None, most=online.MOST_COUNTED, path_axiom=True):
-    measured = experience.drift, experience.stretch
+# Where hypotheses have more places than this, clingo is asked: always, or as it is by default.
+WAYS = pytest.mark.parametrize(
+    "living", [pytest.param(0, id="clingo"), pytest.param(online.LIVING, id="search")]
+)
+
+
+def begun(experience, planar=False, bound=None, most=online.MOST_COUNTED, **options):
+    measured = experience.drift, experience.stretch, experience.tolerance
     first = told(experience, 0)
-    return OnlineSolver(
-        experience.slots, first, planar, bound, most, *measured, path_axiom=path_axiom
-    )
+    return OnlineSolver(experience.slots, first, planar, bound, most, *measured, **options)
 
 
 def go(follower, experience, step):
@@ -61,10 +66,10 @@ def agrees(status, experience, level):
             assert link[p, (here + s) % slots] == (q, (there + r) % slots)
 
 
-def follow_all(experience, planar=False, bound=None):
+def follow_all(experience, planar=False, bound=None, **options):
     """Hold each step against the oracle; the statuses."""
     levels = tree(plain(experience), planar, bound)
-    follower = begun(experience, planar, bound)
+    follower = begun(experience, planar, bound, **options)
     for step, level in enumerate(levels):
         if step:
             go(follower, experience, step)
@@ -74,23 +79,26 @@ def follow_all(experience, planar=False, bound=None):
         yield status
 
 
+@WAYS
 @pytest.mark.parametrize("planar", [False, True])
 @pytest.mark.parametrize("name", WORLDS)
-def test_each_step_of_the_worlds(name, planar):
-    assert list(follow_all(WORLDS[name], planar))
+def test_each_step_of_the_worlds(name, planar, living):
+    assert list(follow_all(WORLDS[name], planar, living=living))
 
 
+@WAYS
 @pytest.mark.parametrize("cases", [30, pytest.param(800, marks=pytest.mark.long)])
-def test_each_step_of_random_experiences(cases):
+def test_each_step_of_random_experiences(cases, living):
     for number in range(cases):
         draw = random.Random(f"online {number}")
         experience = random_experience(draw, draw.choice([6, 9, 12]))
         bound = draw.choice([None, None, 3, 5])
-        assert list(follow_all(experience, draw.random() < 0.5, bound))
+        assert list(follow_all(experience, draw.random() < 0.5, bound, living=living))
 
 
-@pytest.mark.parametrize("cases", [60, pytest.param(300, marks=pytest.mark.long)])
-def test_each_step_without_the_path_axiom(cases):
+@WAYS
+@pytest.mark.parametrize("cases", [30, pytest.param(300, marks=pytest.mark.long)])
+def test_each_step_without_the_path_axiom(living, cases):
     """Worlds with loops and rooms that come back among them; what is preferred is said of all maps
     of the oracle. A step that was taken back leaves no trace here, either."""
     for number in range(cases):
@@ -98,7 +106,7 @@ def test_each_step_without_the_path_axiom(cases):
         experience = random_experience(draw, draw.choice([4, 6, 7]))
         planar, bound = draw.random() < 0.5, draw.choice([None, None, 3])
         seen = plain(experience)
-        follower = begun(experience, planar, bound, path_axiom=False)
+        follower = begun(experience, planar, bound, path_axiom=False, living=living)
         for step, level in enumerate(tree(seen, planar, bound, axiom=False)):
             if step:
                 go(follower, experience, step)
@@ -122,14 +130,15 @@ def test_each_step_without_the_path_axiom(cases):
             TRIED["followed maps that break the path axiom"] += broken
 
 
+@WAYS
 @pytest.mark.parametrize("cases", [30, pytest.param(1500, marks=pytest.mark.long)])
-def test_each_step_of_walks_with_a_marker(cases):
+def test_each_step_of_walks_with_a_marker(living, cases):
     told = 0
     for number in range(cases):
         draw = random.Random(f"online marker {number}")
         experience = random_experience(draw, draw.choice([6, 9, 12]), marker=True)
         planar = draw.random() < 0.5
-        *_, last = follow_all(experience, planar)
+        *_, last = follow_all(experience, planar, living=living)
         bare = replace(experience, **dict.fromkeys(("drops", "picks", "markers"), frozenset()))
         told += last.hypotheses < len(tree(plain(bare), planar)[-1])
     assert told > cases // 5  # in so many the marker has refuted something
@@ -167,13 +176,14 @@ def test_the_papers_instances(name, planar, bound):
         assert {(one.kind, one.cost) for one in found} == {(status.kind, status.cost)}
 
 
-def test_steps_that_were_taken_back_leave_no_trace():
+@WAYS
+def test_steps_that_were_taken_back_leave_no_trace(living):
     for number in range(12):
         draw = random.Random(f"undo {number}")
         experience = random_experience(draw, 9, marker=number % 2 > 0)
         planar = draw.random() < 0.5
-        follower = begun(experience, planar)
-        true, step = begun(experience, planar), 0
+        follower = begun(experience, planar, living=living)
+        true, step = begun(experience, planar, living=living), 0
         while step < experience.steps:
             # Steps that lead elsewhere; some are asked about.
             for _ in range(draw.randint(0, 3)):
@@ -232,6 +242,113 @@ def test_more_than_are_counted(most):
             assert follower.status(WATCH).hypotheses == wanted
     assert any(number > most for number in numbers)
     assert exact is (most == 300)
+
+
+def drawn(draw):
+    """An experience of any kind."""
+    kinds = [random_experience, informed, bent, logs]
+    return draw.choice(kinds)(draw, draw.choice([6, 9, 12]))
+
+
+def said(known, experience):
+    """What a status says, without the many names of the same."""
+    assert known.fault is None
+    maps = [(one.at, one.sizes, list(one.exceptions), one.way(3)) for one in known.maps]
+    assert [one.at for one in known.maps] == list(known.best)
+    assert all(one.sizes[0] == len(experience.map_of(one.at).stars) for one in known.maps)
+    return known, maps
+
+
+@pytest.mark.parametrize("cases", [25, pytest.param(600, marks=pytest.mark.long)])
+def test_clingo_and_the_search_say_the_same(cases, monkeypatch):
+    """Whatever is known besides views, with steps that are taken back, and where the one takes over
+    from the other in the midst of it."""
+    monkeypatch.setattr(online, "FEWER", 1)
+    for number in range(cases):
+        draw = random.Random(f"both ways {number}")
+        experience = drawn(draw)
+        planar = draw.random() < 0.4 and not experience.starts
+        bound, path_axiom = draw.choice([None, None, 3, 5]), draw.random() < 0.8
+        ways = [
+            begun(experience, planar, bound, path_axiom=path_axiom, living=living)
+            for living in (0, online.LIVING, draw.choice([8, 20, 60, 200]))
+        ]
+        before = Certain()
+        for step in range(experience.steps + 1):
+            for way in ways:
+                if step:
+                    go(way, experience, step)
+                if step and draw.random() < 0.2:
+                    back = draw.randint(1, step)
+                    way.undo(back)
+                    if draw.random() < 0.5:
+                        way.status(WATCH)
+                    for again in range(step - back + 1, step + 1):
+                        go(way, experience, again)
+            seen = experience.cut(step)
+            one, *others = (said(way.status(WATCH), seen) for way in ways)
+            assert all(other == one for other in others), experience.facts()
+            assert all(way.experience == seen for way in ways)
+            TRIED["statuses of a follower by clingo and by search"] += 1
+            if step % 3 == 0:  # what is new since then, of which sets are not made
+                known = [other[0].certain for other in others]
+                fresh = one[0].certain.since(before)
+                assert all(other.since(before) == fresh for other in known)
+                pairs = sorted(fresh.same)
+                assert all(
+                    other.since(before).pairs(4) == (pairs[:4], len(pairs)) for other in known
+                )
+                before = known[0]
+
+
+def test_clingo_takes_over_and_gives_back(monkeypatch):
+    monkeypatch.setattr(online, "FEWER", 1)
+    experience = read(ROOT / "instances/manhattan-tour40-signs30.lp").cut(23)
+    true, follower = begun(experience, planar=True), begun(experience, planar=True, living=300)
+    turns = []
+    for step in range(experience.steps + 1):
+        if step:
+            go(true, experience, step)
+            go(follower, experience, step)
+        assert follower.status(WATCH) == true.status(WATCH)
+        by = "search" if follower.searching else "clingo"
+        turns += [by] * (turns[-1:] != [by])
+    assert turns[:3] == ["search", "clingo", "search"]
+    assert true.searching
+    assert true.rules == 0 < follower.rules
+
+
+def test_only_some_hypotheses_are_kept_where_clingos_program_is_too_large(monkeypatch):
+    """Then nothing is said that is not so, and it is called partial; and steps that are taken back
+    make it whole again."""
+    experience = read(ROOT / "instances/grid-3x4-paper.lp")
+    levels = tree(plain(experience.cut(17)))
+    monkeypatch.setattr(online, "SOME", 100)
+    follower = begun(experience, living=200, most_atoms=1000)
+    true = begun(experience)
+    partial = 0
+    for step, level in enumerate(levels):
+        if step:
+            go(follower, experience, step)
+            go(true, experience, step)
+        status, whole = follower.status(WATCH), true.status(WATCH)
+        if status.fault is None:
+            assert (status, partial) == (whole, 0)
+            continue
+        partial += 1
+        assert status.fault == online.TOO_MANY
+        assert (status.kind, status.all_best, status.exact) == (UNPROVED, False, False)
+        assert status.certain is None
+        assert status.hypotheses < len(level)
+        assert {*status.best} <= {*level}
+    assert partial > 2
+    follower.undo(1)
+    go(follower, experience, len(levels) - 1)
+    assert follower.status(WATCH) == status
+    follower.undo(10)
+    true.undo(10)
+    assert follower.status(WATCH) == true.status(WATCH)
+    assert follower.status(WATCH).fault is None
 
 
 def test_boundaries_are_those_of_the_definition():

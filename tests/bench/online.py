@@ -7,19 +7,28 @@ usage. At each step the number of hypotheses and the best maps of both are compa
 """
 
 import argparse
+import multiprocessing
+import resource
+import statistics
 import sys
 import time
 from collections.abc import Iterator
+from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
 
 from topomap.model.experience import Experience, Step
 from topomap.model.facts import read
 from topomap.model.query import Query
+from topomap.questions.follow import Following
+from topomap.questions.records import Record
 from topomap.runtime.files import output
 from topomap.runtime.watch import Stopped, Watch
 from topomap.solver import online, programs, solving
 from topomap.solver.online import OnlineSolver
+from topomap.worlds.environment import grid
+from topomap.worlds.instance import instance
+from topomap.worlds.senses import Senses
 
 ROOT = Path(__file__).resolve().parents[2]
 RUNS = [
@@ -34,14 +43,14 @@ RUNS = [
 HEAD = f"""# A step of `topomap follow`
 
 Written by `python -m bench.online` in `tests/`. A step *online* is `OnlineSolver.step` and
-`OnlineSolver.status`: what is new is ground, then the number of hypotheses (up to
-{online.MOST_COUNTED:,}; of
+`OnlineSolver.status`: the children of each hypothesis, or what is new is ground, then the number of
+hypotheses (up to {online.MOST_COUNTED:,}; of
 more it says so), the best maps, and what is certain. *From scratch* the experience up to that
 step is ground and counted, then ground again for the best maps, as `topomap count` and `solve
 --optimal` do; what is certain is not asked for. *Rules* are ground rules: those that the step
-added, and those of the count from scratch. Seconds are those of the processor, without the
-start of Python. The number of hypotheses and the best maps are compared at each step, and are
-the same.
+added (0 where clingo was not asked), and those of the count from scratch. Seconds are those of
+the processor, without the start of Python. The number of hypotheses and the best maps are compared
+at each step, and are the same.
 """
 
 
@@ -121,12 +130,88 @@ def table(run: tuple[str, bool, int | None], steps: list[Measured]) -> str:
     return "\n".join(lines) + "\n"
 
 
+# Random walks through grids: the side, the steps, whether each place has a landmark of its own, and
+# whether it is also told, with a compass, which earlier place each place is; planar; at most so
+# many places.
+LONG = [
+    (12, 2000, True, True, False, None),
+    (12, 2000, True, False, False, None),
+    (4, 240, False, False, True, 16),
+]
+
+
+def long_walk(
+    side: int, steps: int, signed: bool, known: bool, planar: bool, bound: int | None
+) -> str:
+    """What a step of a long walk takes, and how much memory, early and at the end: a row."""
+    made = instance(
+        grid(side, side),
+        "walk",
+        steps=steps,
+        signs=float(signed),
+        seed=1,
+        senses=Senses(compass=known),
+    )
+    record = Record(one_log=planar)
+    following = Following(planar, bound)
+    seconds, memory, answer = [], [], None
+    first: dict[frozenset[str], int] = {}
+    for number, line in enumerate(filter(None, made.experience.facts().splitlines())):
+        step = number - 1
+        text = line
+        if known and step >= 0:
+            place = made.experience.landmarks[step]
+            text += f" same({first.setdefault(place, step)},{step})."
+        begun = time.process_time()
+        record = record.with_line(text, "walk", number)
+        for _ in following.take(record):
+            answer = following.answer(Watch())
+            "\n".join(answer.lines(0.0))
+            seconds.append(time.process_time() - begun)
+            memory.append(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024)
+    assert answer is not None
+    early, late = (1000 * statistics.median(of) for of in (seconds[150:200], seconds[-50:]))
+    status = answer.status
+    told = "not counted" if status.hypotheses is None else f"{status.hypotheses:,}"
+    told = told if status.exact or status.hypotheses is None else f"> {told}"
+    name = f"{side}x{side}" + ", signed" * signed + ", places known" * known + ", planar" * planar
+    name += f", at most {bound} places" * bool(bound)
+    cells = [name, f"{len(seconds) - 1:,}", told, status.fault or "no"]
+    cells += [f"{early:.1f}", f"{late:.1f}", f"{late / early:.2f}"]
+    cells += [f"{memory[200]:.0f}", f"{memory[-1]:.0f}", f"{memory[-1] / memory[200]:.2f}"]
+    return f"| {' | '.join(cells)} | {max(seconds):.1f} |\n"
+
+
+LONG_HEAD = """
+## Long walks
+
+Random walks through grids. In a *signed* one each place has a landmark of its own; but the theory
+does not take for granted that a place with the same landmark is the same place, so hypotheses
+multiply. Where *places are known*, each step has `same(T,U)` with the first visit of its place, and
+a compass: then one hypothesis lives. *Partial* is why the answer at the end is, if it is: then only
+some hypotheses are kept. A step is reading a line, going on, the answer and its text; milliseconds
+are the median of the steps from 150 to 199, and of the last fifty; memory is the most up to step
+200, and up to the end; the last column is the longest step.
+
+| walk | steps | hypotheses | partial | ms early | late | ratio | MB early | late | ratio | s |
+|---|---:|---:|---|---:|---:|---:|---:|---:|---:|---:|
+"""
+
+
 def main() -> int:
     parser = argparse.ArgumentParser(prog="bench.online", description=__doc__.partition("\n")[0])
     parser.add_argument("--limit", type=float, default=60, help="seconds for a step from scratch")
     parser.add_argument("-o", "--output", default=str(ROOT / "docs/online.md"))
+    parser.add_argument("--long", action="store_true", help="print the table of long walks alone")
     args = parser.parse_args()
     tables = []
+    long = [LONG_HEAD]
+    for walk in LONG:
+        with ProcessPoolExecutor(1, multiprocessing.get_context("spawn")) as alone:
+            long.append(alone.submit(long_walk, *walk).result())
+        print(long[-1], end="", flush=True)
+    if args.long:
+        return 0
     for run in RUNS:
         try:
             steps = list(measured(*run, args.limit))
@@ -136,7 +221,7 @@ def main() -> int:
         tables.append(table(run, steps))
         print(tables[-1].strip().splitlines()[2], flush=True)
     with output(args.output) as out:
-        out.write(HEAD + "".join(tables))
+        out.write(HEAD + "".join(long + tables))
     return 0
 
 

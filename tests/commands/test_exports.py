@@ -167,8 +167,7 @@ SCENES = {
 
 
 @pytest.fixture(params=list(SCENES))
-def scene(request, monkeypatch):
-    monkeypatch.setattr("topomap.drawing.layout.layout", layout)
+def scene(request):
     return made(request.param)
 
 
@@ -182,6 +181,11 @@ def layout(world, ahead):
     if key not in LAID:
         LAID[key] = world, lay_out(world, ahead)
     return LAID[key][1]
+
+
+def laid_out(scene):
+    """Where everything of a scene is."""
+    return layout(scene.world, scene.ahead)
 
 
 @functools.cache
@@ -294,7 +298,7 @@ def is_the_drawing(nodes, edges, scene, name, stub):
 
 
 def test_dot_is_what_pydot_reads(scene):
-    (graph,) = pydot.graph_from_dot_data(exports.dot(scene))
+    (graph,) = pydot.graph_from_dot_data(exports.dot(scene, laid_out(scene)))
     assert graph.get_type() == "graph"
     nodes = {bare(node.get_name()): read_attributes(node) for node in graph.get_node_list()}
     default = nodes.pop("node")
@@ -322,7 +326,7 @@ def test_neato_draws_it_there(scene):
         lacking("GRAPHVIZ", "neato, of Graphviz, is not installed")
     plain = subprocess.run(
         ["neato", "-n2", "-Tplain"],
-        input=exports.dot(scene),
+        input=exports.dot(scene, laid_out(scene)),
         capture_output=True,
         text=True,
         check=True,
@@ -356,7 +360,7 @@ def test_neato_draws_it_there(scene):
 def test_facts_are_what_clingraph_reads(scene):
     from clingraph import Factbase, compute_graphs
 
-    facts = exports.clingraph(scene)
+    facts = exports.clingraph(scene, laid_out(scene))
     base = Factbase()
     base.add_fact_string(facts)
     (graph,) = compute_graphs(base).values()
@@ -376,7 +380,7 @@ def test_facts_are_what_clingraph_reads(scene):
 
 def test_facts_are_of_the_predicates_of_clingraph(scene):
     control = clingo.Control(logger=lambda _, text: pytest.fail(text))
-    control.add(exports.clingraph(scene))
+    control.add(exports.clingraph(scene, laid_out(scene)))
     control.ground()
     found = Counter(
         (atom.symbol.name, len(atom.symbol.arguments)) for atom in control.symbolic_atoms
@@ -591,5 +595,5 @@ def test_too_little_memory_is_said_at_once(tmp_path, call, megabytes):
 )
 def test_a_line_break_in_a_name_breaks_no_title(form, title):
     scene = replace(optimal("grid-3x3-snake")[1][0], name="a\nb", whole=True)
-    assert exports.WRITERS[form](scene).count(title) == 1
+    assert exports.DRAWN[form](scene, laid_out(scene)).count(title) == 1
     assert scene.title.count("\n") == 1

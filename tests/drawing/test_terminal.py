@@ -46,7 +46,7 @@ def walk(world, steps, draw, start=None):
 
 def printed(scene, width=80, coloured=False):
     """The rows of the picture, and the lines of words after it."""
-    lines = drawn(scene, width, coloured).split("\n")
+    lines = drawn(scene, width, coloured)[0].split("\n")
     assert lines[:3] == [*scene.title.split("\n"), ""]
     end = lines.index("", 3)
     return lines[3:end], lines[end + 1 :]
@@ -458,7 +458,7 @@ def test_other_encodings(topomap, encoding):
 
 def test_a_picture_in_ascii_has_no_other_characters():
     for made, steps in DOTTED[:4]:
-        shown = drawn(walk(made, steps, random.Random(0)), 70)
+        shown = drawn(walk(made, steps, random.Random(0)), 70)[0]
         assert not shown.isascii()
         assert shown.translate(ASCII).isascii()
 
@@ -502,7 +502,7 @@ def test_no_map_in_time_is_said_once(topomap):
 def test_places_that_are_drawn_close_together_make_no_endless_picture(monkeypatch):
     """Once such a map had lines of a hundred thousand characters."""
 
-    def close(made, ahead):
+    def close(made, ahead, late):
         laid = layout(made, ahead)
         laid.places.update(dict.fromkeys(list(laid.places)[:2], next(iter(laid.places.values()))))
         return laid

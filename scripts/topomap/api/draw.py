@@ -10,6 +10,7 @@ from topomap.drawing.scenes import Scene
 from topomap.runtime.errors import InputError
 from topomap.runtime.extras import need
 from topomap.runtime.files import output
+from topomap.runtime.watch import Late, never
 
 FORMATS = ("svg", "png", "pdf")
 _ALONE = threading.Lock()  # the settings of matplotlib are the process's, not a thread's
@@ -23,37 +24,45 @@ def form_of(file: str | Path) -> str:
     return form
 
 
-def save(scene: Scene, file: str | Path) -> None:
-    """Draw a map into a file. Raises InputError, one line, where that cannot be, and
-    MemoryError."""
+def save(scene: Scene, file: str | Path, late: Late = never) -> str:
+    """Draw a map into a file; plainly, if it is ``late`` before there is a better drawing. Returns
+    what the picture says of that, or nothing. Raises InputError, one line, where it cannot be
+    written, MemoryError, and what ``late`` raises; then the file is as it was."""
     form = form_of(file)
     need("draw", str(file))
     ready()
     with output(str(file), binary=True) as out:
-        _write(scene, out, form)
+        note = _write(scene, out, form, late)
+        late()
+    return note
 
 
-def svg(scene: Scene) -> str:
+def svg(scene: Scene, late: Late = never) -> str:
     """A map as the text of an SVG. Raises as ``save`` does."""
     need("draw", "a drawing")
     ready()
     made = BytesIO()
-    _write(scene, made, "svg")
+    _write(scene, made, "svg", late)
     return made.getvalue().decode()
 
 
-def characters(scene: Scene, columns: int, coloured: bool, ascii: bool = False) -> str:
-    """A map as lines of characters, at most so many in a line; of ASCII alone, if asked for.
-    Raises MemoryError."""
+def characters(
+    scene: Scene, columns: int, coloured: bool, ascii: bool = False, late: Late = never
+) -> tuple[str, str]:
+    """A map as lines of characters, at most so many in a line; of ASCII alone, if asked for. And
+    what ``save`` returns. Raises MemoryError, and what ``late`` raises."""
     ready()
     from topomap.drawing import terminal
 
-    text = terminal.drawn(scene, columns, coloured)
-    return text.translate(terminal.ASCII) if ascii else text
+    text, note = terminal.drawn(scene, columns, coloured, late)
+    return text.translate(terminal.ASCII) if ascii else text, note
 
 
-def _write(scene: Scene, out: IO[bytes], form: str) -> None:
+def _write(scene: Scene, out: IO[bytes], form: str, late: Late) -> str:
     from topomap.drawing import sheet
+    from topomap.drawing.layout import layout
 
+    laid = layout(scene.world, scene.ahead, late=late)
     with _ALONE:
-        sheet.write(sheet.picture([scene]), out, form)
+        sheet.write(sheet.picture([scene], laid=[laid]), out, form)
+    return laid.note

@@ -2,15 +2,22 @@
 
 from topomap.drawing.ready import ready
 from topomap.drawing.scenes import Scene
+from topomap.runtime.watch import Late, never
 
 
-def exported(scene: Scene, form: str) -> str:
-    """A map as the text of a file: ``graphml``, ``json`` (node-link), ``dot`` or ``clingraph``.
-    Raises MemoryError."""
+def exported(scene: Scene, form: str, late: Late = never) -> tuple[str, str]:
+    """A map as the text of a file: ``graphml``, ``json`` (node-link), ``dot`` or ``clingraph``. The
+    last two tell where places are, and if they are drawn plainly, as it is ``late`` before there is
+    a better drawing, the second text says so. Raises MemoryError, and what ``late`` raises."""
     ready()
-    from topomap.exchange.exports import WRITERS
+    from topomap.exchange.exports import DRAWN, WRITERS
 
-    return WRITERS[form](scene)
+    if form not in DRAWN:
+        return WRITERS[form](scene), ""
+    from topomap.drawing.layout import layout
+
+    laid = layout(scene.world, scene.ahead, late=late)
+    return DRAWN[form](scene, laid), laid.note
 
 
 def imported(file: str) -> str:

@@ -60,6 +60,18 @@ class Explained(Reply):
         return list(self.explanation.in_the_way)
 
     @property
+    def gathered(self) -> bool:
+        """Whether reasons are whole rules, or what is seen after one step. They are where there is
+        no map, and single reasons would be many. Each then has ``breaks``, the single ones that are
+        broken in the map ``at``, and ``then``, the first of them in words."""
+        return self.explanation.gathered
+
+    @property
+    def fewest(self) -> bool:
+        """Whether it is proved that fewer gathered reasons would not be enough."""
+        return self.explanation.fewest
+
+    @property
     def minimal(self) -> bool:
         """Whether it is verified that the reasons are enough, and that none can be spared."""
         return self.explanation.minimal

@@ -15,7 +15,7 @@ from topomap.questions.records import Record
 from topomap.runtime.checks import collection, flag, integer, seconds, whole, whole_if_given
 from topomap.runtime.limits import DRIFT, MOST_COUNTED, STRETCH
 from topomap.runtime.watch import Watch
-from topomap.solver.online import Certain
+from topomap.search.certainty import Certain
 
 
 class FollowerStatus:
@@ -69,8 +69,9 @@ class FollowerStatus:
 
     @property
     def kind(self) -> str:
-        """What the best maps are: "optimal" or "best so far"; "no map", if it is proved that there
-        is none; else "not settled"."""
+        """What the best maps are: "optimal" or "best so far"; "not proved to be best", where only
+        some of the hypotheses are kept, because they are too many; "no map", if it is proved that
+        there is none; else "not settled"."""
         status = self.answer.status
         return status.kind or ("no map" if status.all_best else "not settled")
 
@@ -224,7 +225,7 @@ class Follower:
 
     def status(self, watch: Watch | None = None) -> FollowerStatus:
         """What is known now. Raises ValueError before the first step."""
-        if not self.record.whole():
+        if self._following.solver is None:
             raise ValueError("no step as yet")
         return FollowerStatus(self._following.answer(watch or Watch(self._timeout)))
 
@@ -253,7 +254,7 @@ def follow(
         drift, stretch: how far shifts and lengths may be wrong, in percent; 10 by default.
         tolerance: by how many slots bearings may be wrong; 0 by default.
         parts: what the maps are to have: ``planar``; and ``no_path_axiom``, that a path may hold a
-            place twice, and may be circular (then each step takes longer).
+            place twice, and may be circular.
 
     Returns:
         A follower, to which the first view is told by ``step(view)``, the next ones by

@@ -11,6 +11,9 @@ from topomap.model.experience import DState, Experience, Misread
 from topomap.model.found import BEST, UNPROVED, Found
 from topomap.model.topology import Gateway, Place, TopologicalMap
 from topomap.model.words import markers
+from topomap.runtime.checks import seconds
+from topomap.runtime.limits import DRAWING
+from topomap.runtime.watch import Watch
 
 if TYPE_CHECKING:
     from networkx import MultiGraph
@@ -148,13 +151,15 @@ class Map:
 
         return graph_of(self._scene())
 
-    def draw(self, file: str | Path) -> None:
+    def draw(self, file: str | Path, *, timeout: float | None = DRAWING) -> None:
         """Draw the map into a file, which is SVG, PNG or PDF by the ending of its name: the same
-        bytes for the same map. Raises InputError, one line, if it has another ending, cannot be
-        written, or the extra ``draw`` is not installed."""
+        bytes for the same map, if there is time enough. What cannot be drawn well in ``timeout``
+        seconds is drawn plainly, and the title says so. Raises ValueError if that is no number of
+        seconds, and InputError, one line, if the file has another ending, cannot be written, or the
+        extra ``draw`` is not installed."""
         from topomap.api.draw import save
 
-        save(self._scene(), file)
+        save(self._scene(), file, Watch(seconds("timeout", timeout)).late)
 
     def _repr_svg_(self) -> str | None:
         """What a notebook shows; without the extra ``draw`` it shows the line of ``repr``."""
@@ -166,7 +171,7 @@ class Map:
     def _drawn(self) -> str:
         from topomap.api.draw import svg
 
-        return svg(self._scene())
+        return svg(self._scene(), Watch(DRAWING).late)
 
     def document(self) -> dict[str, Any]:
         """The map as ``topomap solve --json`` writes it (``docs/formats.md`` names the keys)."""

@@ -2,25 +2,64 @@
 those in a file of maps."""
 
 from collections.abc import Callable, Sequence
-from typing import NamedTuple
+from dataclasses import dataclass, replace
+from typing import NamedTuple, overload
 
+from topomap.api.answer import Answer
 from topomap.api.solve import solve_under
 from topomap.documents import maps
 from topomap.drawing import scenes
 from topomap.drawing.scenes import Scene
 from topomap.model.experience import Experience
 from topomap.model.facts import parse
+from topomap.model.found import UNPROVED, Found
 from topomap.model.query import Query
 from topomap.runtime.errors import InputError
 from topomap.runtime.files import read_text
 from topomap.runtime.watch import Watch
+
+MANY = 1000  # optimal maps; if there are more, they are not all looked for
+# The share of the time for the search of optimal maps; and if none is found then, the share of the
+# rest for that of a closed one, before any map is taken.
+OPTIMAL, CLOSED = 0.6, 0.6
+
+
+@dataclass(frozen=True)
+class Searched(Sequence[Scene]):
+    """The maps that were found in an experience from there, each made into a scene when it is asked
+    for; they are all that there are if ``whole``. ``many`` is how many there are (0: not known)."""
+
+    experience: Experience
+    name: str
+    found: Sequence[Found]
+    many: int
+    whole: bool
+
+    def __len__(self) -> int:
+        return len(self.found)
+
+    @overload
+    def __getitem__(self, index: int) -> Scene: ...
+    @overload
+    def __getitem__(self, index: slice) -> list[Scene]: ...
+    def __getitem__(self, index: int | slice) -> Scene | list[Scene]:
+        places = range(len(self.found))[index]
+        if isinstance(places, range):
+            return [self._scene(place) for place in places]
+        return self._scene(places)
+
+    def _scene(self, place: int) -> Scene:
+        one = self.found[place]
+        return scenes.one_found(
+            *(self.experience, self.name, one, place + 1, self.many, self.whole)
+        )
 
 
 class Choice(NamedTuple):
     """The maps to choose from; ``fault`` says why they may not be all of them, of maps in a file
     only where there is none. ``searched``: they were searched for, and not read."""
 
-    scenes: list[Scene]
+    scenes: Sequence[Scene]
     fault: str | None
     searched: bool
 
@@ -31,6 +70,7 @@ def scenes_under(
     query: Query,
     given: str | None = None,
     read: Callable[[str, str], Experience] = parse,
+    number: int = 1,
 ) -> Choice:
     """The maps of a file, under the watch of a command.
 
@@ -38,6 +78,10 @@ def scenes_under(
     query, or with a file of maps ``given`` those in it; of a text of ``solve --json`` those in it.
     ``read`` makes the experience of the text of an instance and its name. Raises InputError, one
     line.
+
+    If no optimal map is found in time, some map is taken that is not proved to be best.
+    The maps of an instance are in order, but if there are more than ``MANY``: then they are as they
+    were found, and as many as are needed for one of some ``number``.
     """
     if given is not None:
         return _given(path, query, given)
@@ -48,10 +92,34 @@ def scenes_under(
         found = [scene for document in documents for scene in scenes.of_document(document)]
         return Choice(found, _missing(documents, found), False)
     experience = read(content, path)
-    answer = solve_under(watch, experience, query, optimal=True)
-    best = [one.found for one in sorted(answer, key=lambda one: one.at)]
-    shown = scenes.of_found(experience, path, best, answer.complete)
+    limit = max(MANY, number)
+    with watch.deadline.sooner(OPTIMAL):
+        answer = solve_under(watch, experience, query, optimal=True, limit=limit)
+        best = [one.found for one in answer]
+    if not best and answer.fault == "timeout":
+        best = _some(watch, experience, query)
+    if answer.fault == "limit" or len(best) > MANY:
+        return Choice(Searched(experience, path, best, 0, False), _unless_limit(answer), True)
+    best.sort(key=lambda one: one.at)
+    shown = Searched(experience, path, best, len(best), answer.complete)
     return Choice(shown, answer.fault, True)
+
+
+def _some(watch: Watch, experience: Experience, query: Query) -> list[Found]:
+    """A map that need not be the best, closed if there is time to find one; or none."""
+    for parts, share in (("closed",), CLOSED), ((), 1.0):
+        with watch.deadline.sooner(share):
+            answer = solve_under(watch, experience, query.having(*parts), limit=1)
+            for one in answer:
+                return [replace(one.found, kind=UNPROVED, proved=False)]
+        if answer.fault not in (None, "timeout"):
+            break
+    return []
+
+
+def _unless_limit(answer: Answer) -> str | None:
+    """Why an answer is partial, if it is not for want of maps that nobody asked for."""
+    return None if answer.fault == "limit" else answer.fault
 
 
 def _given(path: str, query: Query, given: str) -> Choice:

@@ -10,7 +10,7 @@ from typing import Any, NoReturn
 from topomap.cli.subcommands import SUBCOMMANDS
 from topomap.model.vocabulary import CHOSEN, FORMS, PARTS
 from topomap.runtime.errors import InputError
-from topomap.runtime.limits import DRIFT, LARGEST, STRETCH
+from topomap.runtime.limits import DRAWING, DRIFT, LARGEST, STRETCH
 
 STATUS = """\
 exit status: 0 done; 1 the answer is no (the table differs, no map, an unsound map);
@@ -326,8 +326,8 @@ def add_scene(command: Parser) -> None:
     add(
         "file",
         metavar="INSTANCE|MAPS.json",
-        help="an instance, of which an optimal map is shown, or one of the best so far, with the "
-        "options below; or a file of maps, from topomap solve --json",
+        help="an instance, of which an optimal map is shown, which is closed, or one of the best "
+        "so far, with the options below; or a file of maps, from topomap solve --json",
     )
     add(
         "given",
@@ -336,8 +336,18 @@ def add_scene(command: Parser) -> None:
         help="a file of maps of that instance, to be shown instead, from clingo --outf=2 or "
         "topomap solve --json (- is standard input)",
     )
-    add("--map", type=number(int, 1), metavar="N", help="take the N-th map (default: 1)")
+    add(
+        "--map",
+        type=number(int, 1),
+        metavar="N",
+        help="take the N-th map; if more than 1000 are optimal, the N-th one found (default: 1)",
+    )
     add_known(command)
     add_asked(
-        command, CHOSEN, limit="stop the search for maps after S seconds, and take what was found"
+        command,
+        CHOSEN,
+        limit="take S seconds in all, about: if the search for optimal maps has not ended by then, "
+        "a map is taken that is not proved to be best; and what cannot be drawn well in the time "
+        f"that is left is drawn plainly (default: {DRAWING:g})",
     )
+    command.set_defaults(timeout=DRAWING)

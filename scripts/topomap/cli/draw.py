@@ -4,7 +4,7 @@ import argparse
 from typing import Any
 
 from topomap.cli.arguments import add_scene, command
-from topomap.cli.scene import scene_of
+from topomap.cli.scene import with_scene
 
 
 def add(group: Any) -> None:
@@ -28,7 +28,4 @@ def run(args: argparse.Namespace) -> int:
     from topomap.api.draw import form_of, save
 
     form_of(args.output)
-    scene, status = scene_of(args)
-    if scene is not None:
-        save(scene, args.output)
-    return status
+    return with_scene(args, lambda scene, late: save(scene, args.output, late))

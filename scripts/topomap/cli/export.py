@@ -1,11 +1,15 @@
 """The subcommand ``export``."""
 
 import argparse
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from topomap.cli.arguments import add_scene, command
-from topomap.cli.scene import scene_of
+from topomap.cli.scene import with_scene
 from topomap.runtime.limits import EXPORTS
+
+if TYPE_CHECKING:
+    from topomap.drawing.scenes import Scene
+    from topomap.runtime.watch import Late
 
 
 def add(group: Any) -> None:
@@ -28,8 +32,10 @@ def run(args: argparse.Namespace) -> int:
     from topomap.api.exchange import exported
     from topomap.runtime.files import output
 
-    scene, status = scene_of(args)
-    if scene is not None:
+    def show(scene: "Scene", late: "Late") -> str:
+        text, note = exported(scene, args.format, late)
         with output(args.output) as file:
-            file.write(exported(scene, args.format))
-    return status
+            file.write(text)
+        return note
+
+    return with_scene(args, show)

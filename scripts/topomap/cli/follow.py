@@ -53,7 +53,7 @@ what is certain: new(T), the place where the agent is after step T was not visit
         "lines already, go on after them",
     )
     add("--planar", action="store_true", help=f"{PARTS['planar']}; of one log only (no start)")
-    add("--no-path-axiom", action="store_true", help=f"{PARTS['no_path_axiom']} (slower)")
+    add("--no-path-axiom", action="store_true", help=f"{PARTS['no_path_axiom']}")
     add("--bound", type=number(int, 1), metavar="B", help="at most B places")
     add(
         "--marker",
@@ -138,7 +138,7 @@ def _replay(args: argparse.Namespace, follower: "Follower", log: "Log") -> int:
     begun = time.monotonic()
     for _ in follower.take(record):
         pass
-    return _tell(args, follower, begun, DONE) if record.whole() else DONE
+    return _tell(args, follower, begun, DONE) if follower.record.whole() else DONE
 
 
 def _tell(args: argparse.Namespace, follower: "Follower", begun: float, before: int) -> int:

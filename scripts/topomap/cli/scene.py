@@ -1,31 +1,41 @@
-"""The map that ``draw``, ``show`` and ``export`` are asked for."""
+"""The map that ``draw``, ``show`` and ``export`` are asked for, and the time that they have."""
 
 import argparse
+import time
+from collections.abc import Callable
 from functools import partial
 from typing import TYPE_CHECKING
 
 from topomap.cli.calls import asked_query, parsed
 from topomap.model.vocabulary import CHOSEN
 from topomap.runtime.errors import InputError, say
-from topomap.runtime.status import exit_status
+from topomap.runtime.status import PARTIAL, exit_status
 
 if TYPE_CHECKING:
     from topomap.drawing.scenes import Scene
+    from topomap.runtime.watch import Late
+
+SEARCH = 0.7  # of the time, at most, goes into the search for maps; the rest is for the drawing
 
 
-def scene_of(args: argparse.Namespace) -> "tuple[Scene | None, int]":
-    """The map, and the exit status: partial, if it may not be the best."""
+def with_scene(args: argparse.Namespace, show: "Callable[[Scene, Late], str]") -> int:
+    """Search for the map, and show it, both within the time limit of the call; the exit status.
+
+    ``show`` is given what tells when the time is over. It returns a note if the map is then drawn
+    plainly, which is partial, as it is if the map may not be the best.
+    """
     from topomap.api.scenes import scenes_under
     from topomap.model import words
     from topomap.runtime.extras import need
-    from topomap.runtime.watch import heeding
+    from topomap.runtime.watch import Stopped, heeding
 
     need("draw", f"topomap {args.command}")
     query = asked_query(args, CHOSEN)
-    with heeding(args.timeout) as watch:
-        read = partial(parsed, args)
-        found, fault, searched = scenes_under(watch, args.file, query, args.given, read)
     number = args.map or 1
+    begun = time.monotonic()
+    with heeding(args.timeout * SEARCH) as watch:
+        read = partial(parsed, args)
+        found, fault, searched = scenes_under(watch, args.file, query, args.given, read, number)
     source = args.file if args.given is None else args.given
     if fault:
         none = "no map found yet; " if searched else "no map in it; "
@@ -35,4 +45,17 @@ def scene_of(args: argparse.Namespace) -> "tuple[Scene | None, int]":
     elif number > len(found):
         many = words.number(len(found), "map")
         raise InputError(f"{source}: it has {many}, there is no map {number}")
-    return (found[number - 1] if number <= len(found) else None), exit_status(fault, bool(found))
+    status = exit_status(fault, bool(found))
+    if number > len(found):
+        return status
+    left = max(0.0, args.timeout - (time.monotonic() - begun))
+    try:
+        with heeding(left, quiet=True) as watch:
+            note = show(found[number - 1], watch.late)
+    except Stopped as stopped:
+        say(f"{source}: partial: {stopped}")
+        return exit_status(str(stopped), False)
+    if note:
+        say(f"{source}: partial: {note} (--timeout gives it more time)")
+        status = status or PARTIAL
+    return status

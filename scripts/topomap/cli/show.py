@@ -4,10 +4,14 @@ import argparse
 import os
 import shutil
 import sys
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from topomap.cli.arguments import add_scene, command
-from topomap.cli.scene import scene_of
+from topomap.cli.scene import with_scene
+
+if TYPE_CHECKING:
+    from topomap.drawing.scenes import Scene
+    from topomap.runtime.watch import Late
 
 LEAST, MOST = 20, 100  # columns of a terminal
 
@@ -30,11 +34,13 @@ def run(args: argparse.Namespace) -> int:
     """Print a map."""
     from topomap.api.draw import characters
 
-    scene, status = scene_of(args)
-    if scene is not None:
+    def show(scene: "Scene", late: "Late") -> str:
         columns = max(LEAST, min(shutil.get_terminal_size().columns, MOST))
-        sys.stdout.write(characters(scene, columns, _is_coloured(), not _has_signs()))
-    return status
+        text, note = characters(scene, columns, _is_coloured(), not _has_signs(), late)
+        sys.stdout.write(text)
+        return note
+
+    return with_scene(args, show)
 
 
 def _is_coloured() -> bool:

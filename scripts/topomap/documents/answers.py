@@ -60,10 +60,12 @@ def map_line(experience: Experience, found: Found) -> str:
         len(world.pending()),
     )
     way = " ".join(f"{place}.{slot}" for place, slot in found.at)
-    return words.disbelieved(experience, found.misread) + _line(size, way)
+    return words.disbelieved(experience, found.misread) + line_of(size, way)
 
 
-def _line(size: tuple[int, int, int, int, int], way: str) -> str:
+def line_of(size: tuple[int, int, int, int, int], way: str) -> str:
+    """The line of a map with these numbers of places, links and paths, this genus, and so many
+    pending gateways; ``way`` tells the dstates."""
     places, links, paths, genus, pending = size
     return f"places {places}, links {links}, paths {paths}, genus {genus}, pending {pending}: {way}"
 
@@ -106,7 +108,7 @@ class Texts:
             one.genus(),
             one.number_of_pending(),
         )
-        return _line(size, way)
+        return line_of(size, way)
 
     def document(self, at: Sequence[DState]) -> str:
         """A hypothesis as JSON text: that of ``map_json``."""

@@ -5,15 +5,17 @@ triangle is folded, and is bent towards a good shape (``springs``) by steps that
 nothing comes to cross and every rotation stays right.
 """
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 from scipy import sparse
 from scipy.sparse import linalg
 
-from topomap.drawing.mesh import Mesh, Numbers, Points
+from topomap.drawing.mesh import Mesh, Numbers, Points, TooLong
 from topomap.drawing.springs import Springs, Term
 from topomap.model.topology import Gateway, Place, TopologicalMap
+from topomap.runtime.watch import Late, never
 
 # How much triangles resist, and how much places and lines keep apart, one after the other; what is
 # stuck where triangles are flat comes free when they resist more again.
@@ -31,23 +33,36 @@ STAGES = (
 ANEW = (100.0, 0.0), (10.0, 0.0)  # before these, if the drawing is not legible
 AGAIN = 2  # times at most, and not in fewer steps
 STEPS = 120  # of the descent, at most, with each weight
+WORK = 600_000  # numbers that all steps changed, together: then a drawing is not begun again
+MOST_POINTS = 20_000  # of a mesh
 LITTLE = 1e-9  # stiffness that leaves none without any
+# A matrix that is positive definite is solved without exchanging rows.
+PIVOTS: Any = {"diag_pivot_thresh": 0.0, "options": {"SymmetricMode": True}}
 
 
-def bent(world: TopologicalMap, crossings: list[Place], steps: int) -> dict[Gateway, Points]:
+def bent(
+    world: TopologicalMap, crossings: list[Place], steps: int, late: Late = never
+) -> dict[Gateway, Points]:
     """Lines with bends, in a drawing in which no triangle of the mesh is folded; they go on
-    straight through the crossings."""
+    straight through the crossings. Raises TooLong if the drawing is not legible when the time is
+    over."""
     mesh = Mesh(world, crossings)
+    if mesh.size > MOST_POINTS or late():
+        raise TooLong
+    points = mesh.start(late)
     shape = Springs(mesh)
-    points = mesh.start()
     x = np.concatenate([points.ravel(), shape.norths(points)])
     rim = np.concatenate([2 * np.array(mesh.rim), 2 * np.array(mesh.rim) + 1])
-    free = np.setdiff1d(np.arange(len(x)), rim)
+    curves = Curvature(shape.fixed, np.setdiff1d(np.arange(len(x)), rim), len(x))
     for again in range(AGAIN + 1 if steps >= STEPS else 1):
         for shape.weight, shape.apart in ANEW * (again > 0) + STAGES:
-            x = _descend(shape, x, free, steps)
-        if shape.legible(x):
+            x = _descend(shape, x, curves, steps, late)
+        if shape.legible(x) or curves.solved * len(x) > WORK:
             break
+        if late():
+            raise TooLong
+    if late() and not shape.legible(x):
+        raise TooLong
     points = x[: 2 * mesh.size].reshape(-1, 2)
     lines = {}
     for start in world.gateways():
@@ -60,21 +75,19 @@ def bent(world: TopologicalMap, crossings: list[Place], steps: int) -> dict[Gate
     return lines
 
 
-def _descend(shape: Springs, x: Points, free: Numbers, steps: int) -> Points:
+def _descend(shape: Springs, x: Points, curves: "Curvature", steps: int, late: Late) -> Points:
     """Numbers of less energy, by Newton's method, the free ones changed. The curvature of each
     term is taken for no less than nothing; steps go only to where the energy is finite, so that
     what was never folded is not."""
-    number = np.full(len(x), -1)
-    number[free] = np.arange(len(free))
     value, terms = shape(x)
     idle = 0
     for _ in range(steps):
-        slope, curvature = _system(terms, number, len(free))
+        if late():
+            break
+        slope = curves.slope(terms)
         step = np.zeros(len(x))
-        step[free] = linalg.splu(curvature, "MMD_AT_PLUS_A", options={"SymmetricMode": True}).solve(
-            -slope
-        )
-        gain = slope @ step[free]
+        step[curves.free] = curves.solve(terms, -slope)
+        gain = slope @ step[curves.free]
         length = min(1.0, 0.9 * shape.reach(x, step))
         while (new := shape(x + length * step))[0] > value + 1e-4 * length * gain:
             length /= 2
@@ -84,22 +97,66 @@ def _descend(shape: Springs, x: Points, free: Numbers, steps: int) -> Points:
         x = x + length * step
         value, terms = new
         if idle > 9:
-            break
+            return x
     return x
 
 
-def _system(terms: list[Term], number: Numbers, size: int) -> tuple[Points, Any]:
-    """The slope of the energy by the numbers, and its curvature, a matrix."""
-    pull, stiff = (np.concatenate([term[n] for term in terms]) for n in (2, 3))
-    ends = np.cumsum([len(term[2]) for term in terms])
-    rows = [
-        np.tile(np.arange(end - len(p), end), len(of))
-        for end, (of, _, p, _) in zip(ends, terms, strict=True)
-    ]
-    row = np.concatenate(rows)
-    column = np.concatenate([number[of].ravel() for of, *_ in terms])
-    entry = np.concatenate([ways.ravel() for _, ways, *_ in terms])
-    kept = column >= 0
-    by = sparse.csr_matrix((entry[kept], (row[kept], column[kept])), (len(pull), size))
-    curvature = by.T @ sparse.diags(stiff) @ by + LITTLE * sparse.identity(size)
-    return by.T @ pull, curvature.tocsc()
+class Curvature:
+    """The curvature of an energy by the numbers that are ``free``: a symmetric matrix. Where its
+    entries are is found out once; but not for the last kind of terms, which are others each
+    time."""
+
+    def __init__(self, fixed: Sequence[Numbers], free: Numbers, total: int) -> None:
+        self.total, self.free = total, free
+        self.solved = 0  # how often
+        self.number = np.full(self.total, -1)
+        self.number[free] = np.arange(len(free))
+        places = [self._places(columns) for columns in fixed]
+        place = np.concatenate(places)
+        self.kept = place >= 0
+        # The diagonal is in the matrix in any case.
+        size = len(free)
+        keys, at = np.unique(
+            np.concatenate([place[self.kept], np.arange(size) * (size + 1)]), return_inverse=True
+        )
+        self.at = at[:-size]
+        self.diagonal = at[-size:]
+        self.rows = keys % size
+        self.starts = np.searchsorted(keys // size, np.arange(size + 1))
+
+    def _places(self, columns: Numbers) -> Numbers:
+        """Where in the matrix each pair of the numbers of each term is, column by column; -1 if
+        one of them is not free."""
+        of = self.number[columns]
+        one, other = of[:, None, :], of[None, :, :]
+        place = one + len(self.free) * other
+        return np.where((one >= 0) & (other >= 0), place, -1).ravel()
+
+    def _matrix(self, entries: Points) -> Any:
+        data = np.asarray(np.bincount(self.at, entries, len(self.rows)), float)
+        data[self.diagonal] += LITTLE
+        size = len(self.free)
+        return sparse.csc_matrix((data, self.rows, self.starts), (size, size))
+
+    def slope(self, terms: list[Term]) -> Points:
+        """How the energy grows by each free number."""
+        column = np.concatenate([columns.ravel() for columns, *_ in terms])
+        pull = np.concatenate([(ways * pull).ravel() for _, ways, pull, _ in terms])
+        return np.asarray(np.bincount(column, pull, self.total)[self.free], float)
+
+    def solve(self, terms: list[Term], slope: Points) -> Points:
+        """The step by which the slope would grow so much."""
+        self.solved += 1
+        *fixed, last = (_products(ways, stiff) for _, ways, _, stiff in terms)
+        curvature = self._matrix(np.concatenate(fixed)[self.kept])
+        place = self._places(terms[-1][0])
+        kept = place >= 0
+        size = len(self.free)
+        column, row = np.divmod(place[kept], size)
+        curvature = curvature + sparse.csc_matrix((last[kept], (row, column)), (size, size))
+        solved: Points = linalg.splu(curvature, "MMD_AT_PLUS_A", **PIVOTS).solve(slope)
+        return solved
+
+
+def _products(ways: Points, stiff: Points) -> Points:
+    return (ways[:, None, :] * (stiff * ways)[None, :, :]).ravel()

@@ -3,23 +3,28 @@
 A map of genus 0 is drawn without crossings; of one of higher genus a planar part is, and the
 other links are led through its faces, across as few links as can be. Around each place the
 gateways leave in their order, clockwise as the agent turns. If all links can be straight and in
-the directions of one compass, they are.
+the directions of one compass, they are. What takes too long is drawn plainly, and says so.
 """
 
 import random
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
+from scipy import sparse
+from scipy.sparse import linalg
 
 from topomap.drawing.bent import STEPS, bent
-from topomap.drawing.mesh import Points, cross, faces_of
+from topomap.drawing.mesh import Points, TooLong, cross, faces_of
+from topomap.drawing.plain import NOTE, plain
 from topomap.drawing.planarize import left_out, planar_part, routed
 from topomap.drawing.springs import STUB
 from topomap.model.topology import Gateway, Place, TopologicalMap
+from topomap.runtime.watch import Late, never
 
 GAP = 1.0  # between components
 SHORTEST = 0.4  # link in a drawing by the compass
+NARROW = 0.05  # that lines may be to each other in it
 TRIES, LENGTHS = 150, (1, 1, 1, 2, 3)  # of other drawings, and of links in them
 
 
@@ -30,7 +35,8 @@ class Layout:
     ``places``: a point each. ``lines``: of each gateway the line that leaves by it: to the place
     at the other end, or to the end of a stub. ``faces``: those of a planar map, each as the
     gateways that its walk leaves by, the face on their right; ``outer``: the number of the outer
-    one. ``crossing``: of another map the links that are not in the planar part.
+    one. ``crossing``: of another map the links that are not in the planar part. ``note`` says that
+    the drawing is plain, if it is: then no faces are told, nor which links cross others.
     """
 
     places: dict[Place, Points]
@@ -38,36 +44,49 @@ class Layout:
     faces: list[list[Gateway]]
     outer: int
     crossing: list[tuple[Gateway, Gateway]]
+    note: str = ""
 
     def outline(self, face: list[Gateway]) -> Points:
         """The line round a face."""
         return np.concatenate([self.lines[gateway][:-1] for gateway in face])
 
 
-def layout(world: TopologicalMap, ahead: Gateway | None = None, steps: int = STEPS) -> Layout:
+def layout(
+    world: TopologicalMap, ahead: Gateway | None = None, steps: int = STEPS, late: Late = never
+) -> Layout:
     """A drawing of a map. ``ahead`` is a gateway that is left to the right of the
     picture (else the first one); fewer ``steps`` do for a small picture. Several components stand
-    side by side, and then no faces are told, for they share the outer one."""
+    side by side, and then no faces are told, for they share the outer one. The drawing is plain if
+    it is ``late`` before there is a better one, or if that takes more work than one drawing may."""
     parts = world.parts()
     if len(parts) > 1:
-        return _beside([layout(part, _there(ahead, part), steps) for part in parts])
-    part = planar_part(world)
-    lines = _by_compass(part) if part is world else None
-    if lines is None:
-        lines = bent(*routed(part, left_out(part, world)), steps)
+        return _beside([layout(part, _there(ahead, part), steps, late) for part in parts])
+    try:
+        part = planar_part(world, late=late)
+        lines = _by_compass(part, late) if part is world else None
+        if lines is None:
+            lines = bent(*routed(part, left_out(part, world), late), steps, late)
+    except TooLong:
+        lines = plain(world, STUB)
+        return replace(_turned(world, lines, ahead), note=NOTE)
     return _layout(world, part, lines, ahead)
 
 
-def straight(world: TopologicalMap, ahead: Gateway | None = None) -> Layout | None:
+def straight(
+    world: TopologicalMap, ahead: Gateway | None = None, late: Late = never
+) -> Layout | None:
     """A drawing by the compass, if there is one; of the links that are not in the planar part
     only the beginning and the end, as stubs."""
     parts = world.parts()
     if len(parts) > 1:
-        drawn = [straight(part, _there(ahead, part)) for part in parts]
+        drawn = [straight(part, _there(ahead, part), late) for part in parts]
         laid = [one for one in drawn if one is not None]
         return _beside(laid) if len(laid) == len(parts) else None
-    part = planar_part(world)
-    lines = _by_compass(part)
+    try:
+        part = planar_part(world, late=late)
+    except TooLong:
+        return None
+    lines = _by_compass(part, late)
     return None if lines is None else _layout(world, part, lines, ahead)
 
 
@@ -89,7 +108,8 @@ def _beside(drawings: Sequence[Layout]) -> Layout:
         lines |= {gateway: line + shift for gateway, line in laid.lines.items()}
         crossing += laid.crossing
         right += points[:, 0].max() - points[:, 0].min() + GAP
-    return Layout(places, lines, [], -1, crossing)
+    note = next((laid.note for laid in drawings if laid.note), "")
+    return Layout(places, lines, [], -1, crossing, note)
 
 
 def _layout(
@@ -98,17 +118,24 @@ def _layout(
     lines: Mapping[Gateway, Points],
     ahead: Gateway | None,
 ) -> Layout:
-    """The drawing, turned so that ``ahead`` leads to the right."""
+    """The drawing, with what it shows of the map."""
     crossing = left_out(part, world)
     faces, outer = ([], -1) if crossing else faces_of(world)
+    laid = _turned(world, lines, ahead)
+    return replace(laid, faces=faces, outer=outer, crossing=crossing)
+
+
+def _turned(
+    world: TopologicalMap, lines: Mapping[Gateway, Points], ahead: Gateway | None
+) -> Layout:
+    """Places and lines, turned so that ``ahead`` leads to the right."""
     first = ahead or next(world.gateways(), None)
     if first is None:
-        return Layout({place: np.zeros(2) for place in world.stars}, {}, faces, outer, [])
+        return Layout({place: np.zeros(2) for place in world.stars}, {}, [], -1, [])
     x, y = lines[first][1] - lines[first][0]
     turn = np.array([[x, -y], [y, x]]) / np.hypot(x, y)
     lines = {gateway: line @ turn for gateway, line in lines.items()}
-    places = {place: line[0] for (place, _), line in lines.items()}
-    return Layout(places, lines, faces, outer, crossing)
+    return Layout({place: line[0] for (place, _), line in lines.items()}, lines, [], -1, [])
 
 
 def compass(world: TopologicalMap) -> tuple[dict[Place, int], bool]:
@@ -135,64 +162,83 @@ def _direction(angle: float, slots: int) -> Points:
     return np.array([np.cos(turn), np.sin(turn)])
 
 
-def _by_compass(world: TopologicalMap) -> dict[Gateway, Points] | None:
+def _by_compass(world: TopologicalMap, late: Late = never) -> dict[Gateway, Points] | None:
     """Lines in the directions of the compass, as near as can be to length 1, or if they meet or
-    become short, to some other lengths; None if they do so by all that are tried."""
+    become short, to some other lengths; None if they do so by all that are tried, or are tried
+    before it is late."""
     north, fits = compass(world)
     if not fits:
         return None
     number = {place: index for index, place in enumerate(world.stars)}
-    rows = [np.eye(2, 2 * len(number))[n] for n in (0, 1)]
     edges = world.edges()
-    for (p, s), (q, _) in edges:
-        along = _direction(north[p] + s, world.slots)
-        for axis in along, 100 * along[::-1] * [-1, 1]:
-            row = np.zeros((len(number), 2))
-            row[number[q]] += axis
-            row[number[p]] -= axis
-            rows.append(row.ravel())
-    lengths = np.zeros((len(rows), 1 + TRIES))
+    starts, ends = (np.array([number[edge[n][0]] for edge in edges], int) for n in (0, 1))
+    along = np.array([_direction(north[p] + s, world.slots) for (p, s), _ in edges]).reshape(-1, 2)
+    aside = 100 * along[:, ::-1] * [-1, 1]
+    # Two rows for each link, how far it leads along its direction, and a hundred times how far
+    # aside; and two for the first place.
+    row = np.repeat(2 + np.arange(2 * len(edges)).reshape(-1, 2), 4, axis=0).reshape(-1, 4, 2)
+    column = np.stack([2 * ends, 2 * ends + 1, 2 * starts, 2 * starts + 1], 1)
+    entry = np.stack([np.hstack([along, -along]), np.hstack([aside, -aside])], 2)
+    column = np.repeat(column[:, :, None], 2, axis=2)
+    rows, columns, entries = (
+        np.concatenate([[0, 1] if n < 2 else [1.0, 1.0], part.ravel()])
+        for n, part in enumerate((row, column, entry))
+    )
+    shape = 2 + 2 * len(edges), 2 * len(number)
+    by = sparse.csc_matrix((entries, (rows, columns)), shape)
+    solved = linalg.splu((by.T @ by).tocsc())
     draw = random.Random(0)
     some = sorted(([draw.choice(LENGTHS) for _ in edges] for _ in range(TRIES)), key=sum)
-    lengths[2::2] = np.array([[1] * len(edges), *some]).T
-    tried = np.linalg.lstsq(np.array(rows), lengths, rcond=None)[0].T.reshape(1 + TRIES, -1, 2)
-    drawn = (_lines(world, north, dict(zip(number, found, strict=True))) for found in tried)
-    return next((lines for lines in drawn if lines is not None), None)
+    for lengths in [[1] * len(edges), *some]:
+        wanted = np.zeros(shape[0])
+        wanted[2::2] = lengths
+        found = solved.solve(by.T @ wanted).reshape(-1, 2)
+        side = found[ends] - found[starts]
+        far = (side * along).sum(1)
+        off = np.linalg.norm(side - far[:, None] * along, axis=1)
+        if (far >= SHORTEST).all() and (off <= 0.01 * SHORTEST).all():
+            lines = _lines(world, north, dict(zip(number, found, strict=True)))
+            if not _meet(world, lines):
+                return lines
+        if late():
+            break
+    return None
 
 
 def _lines(
     world: TopologicalMap, north: Mapping[Place, int], found: Mapping[Place, Points]
-) -> dict[Gateway, Points] | None:
-    """The lines between places, and stubs; None if one is aslant or short, or meets others."""
+) -> dict[Gateway, Points]:
+    """The lines between places, and stubs."""
     lines = {}
     for p, s in world.gateways():
-        along, here = _direction(north[p] + s, world.slots), found[p]
-        end = here + STUB * along
-        if (p, s) in world.links:
-            end = found[world.links[p, s][0]]
-            if (end - here) @ along < SHORTEST or np.linalg.norm(
-                (end - here) - (end - here) @ along * along
-            ) > 0.01 * SHORTEST:
-                return None
-        lines[p, s] = np.array([here, end])
-    return None if _meet(world, lines) else lines
+        here = found[p]
+        linked = (p, s) in world.links
+        stub = STUB * _direction(north[p] + s, world.slots)
+        lines[p, s] = np.array([here, found[world.links[p, s][0]] if linked else here + stub])
+    return lines
 
 
 def _meet(world: TopologicalMap, lines: Mapping[Gateway, Points]) -> bool:
     """Whether straight lines meet elsewhere than at their places."""
     once = [g for g in lines if g not in world.links or g < world.links[g]]
-    ends = [{g[0], world.links[g][0]} if g in world.links else {g[0]} for g in once]
-    a, b = (np.array([lines[g][n] for g in once]) for n in (0, 1))
-    for n in range(len(once)):
+    number = {place: index for index, place in enumerate(world.stars)}
+    places = np.array(
+        [[number[g[0]], number[world.links[g][0] if g in world.links else g[0]]] for g in once]
+    )
+    drawn = np.array([lines[g] for g in once]).reshape(-1, 2, 2)
+    low, high = drawn.min(1) - NARROW, drawn.max(1) + NARROW
+    for n in range(len(once) - 1):
+        beside = (low[n + 1 :] <= high[n]).all(1) & (high[n + 1 :] >= low[n]).all(1)
+        beside &= ~(places[n + 1 :, :, None] == places[n]).any((1, 2))
+        if not beside.any():
+            continue
+        (a, b), (c, d) = drawn[n], drawn[n + 1 :][beside].transpose(1, 0, 2)
         # The distance of each line's ends from this line, and the other way round.
-        near = _distance(a[n + 1 :], a[n], b[n]), _distance(b[n + 1 :], a[n], b[n])
-        other = _distance(a[n], a[n + 1 :], b[n + 1 :]), _distance(b[n], a[n + 1 :], b[n + 1 :])
-        least = np.min([*near, *other], axis=0)
-        side = [cross(b[n] - a[n], p[n + 1 :] - a[n]) for p in (a, b)]
-        over = [cross(b[n + 1 :] - a[n + 1 :], p[n] - a[n + 1 :]) for p in (a, b)]
+        ends = _distance(c, a, b), _distance(d, a, b), _distance(a, c, d), _distance(b, c, d)
+        side = [cross(b - a, p - a) for p in (c, d)]
+        over = [cross(d - c, p - c) for p in (a, b)]
         crossed = (side[0] * side[1] < 0) & (over[0] * over[1] < 0)
-        apart = np.array([not ends[n] & ends[m] for m in range(n + 1, len(once))], dtype=bool)
-        if (apart & (crossed | (least < 0.05))).any():
+        if (crossed | (np.min(ends, axis=0) < NARROW)).any():
             return True
     return False
 

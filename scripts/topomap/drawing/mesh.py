@@ -9,10 +9,15 @@ from scipy.sparse import linalg
 
 from topomap.model.topology import Gateway, Place, TopologicalMap
 from topomap.runtime import nx
+from topomap.runtime.watch import Late, never
 
 Points = NDArray[np.float64]
 Numbers = NDArray[np.int64]
 BENDS = 5  # inner points of a link that is not straight
+
+
+class TooLong(Exception):
+    """A better drawing would take too long; the plain one is taken."""
 
 
 def faces_of(world: TopologicalMap) -> tuple[list[list[Gateway]], int]:
@@ -97,11 +102,14 @@ class Mesh:
                     found += self.lines[place, slot]
         return found
 
-    def start(self) -> Points:
+    def start(self, late: Late = never) -> Points:
         """A drawing in which no triangle is folded, with the rim on a circle: each other point is
         the mean of its neighbours by the weights (Floater, Mean value coordinates, 2003) that
-        it has in a drawing on a grid, where nothing is too small for the numbers to hold."""
-        points = self._on_a_grid()
+        it has in a drawing on a grid, where nothing is too small for the numbers to hold. Raises
+        TooLong when it is late."""
+        points = self._on_a_grid(late)
+        if late():
+            raise TooLong
         entries: list[tuple[Numbers, Numbers, Points]] = []
         for corners in ([0, 1, 2], [1, 2, 0], [2, 0, 1]):
             a, b, c = self.triangles[:, corners].T
@@ -121,7 +129,7 @@ class Mesh:
         points[free] = linalg.spsolve((total - pull[free][:, free]).tocsc(), fixed)
         return points
 
-    def _on_a_grid(self) -> Points:
+    def _on_a_grid(self, late: Late) -> Points:
         """A drawing of the mesh with whole numbers as coordinates (Chrobak and Payne 1995)."""
         follows: dict[int, dict[int, int]] = {point: {} for point in range(self.size)}
         for corners in self.triangles.tolist():
@@ -135,6 +143,8 @@ class Mesh:
             while (following := left_of.get(order[-1], first)) != first:
                 order.append(following)
             around[point] = order[::-1]
+        if late():
+            raise TooLong
         embedding: nx.PlanarEmbedding[int] = nx.PlanarEmbedding()
         embedding.set_data(around)
         found = nx.combinatorial_embedding_to_pos(embedding)

@@ -10,6 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.font_manager import findfont, get_font
 from matplotlib.patches import Circle, PathPatch, Polygon
 from matplotlib.path import Path as Outline
+from scipy.spatial import KDTree
 
 from topomap.drawing.labels import gaps
 from topomap.drawing.layout import Layout, layout
@@ -22,6 +23,7 @@ INK, LINK, CROSSING, PENDING = "#1b1b1b", "#3d4a57", "#c2332d", "#2f7fc1"
 AGENT, SIGN, SIGNED, STEP = "#e07b00", "#2e7d4f", "#e7f5ea", "#5c6670"
 FACES = ("#dfeaf3", "#f6ead9", "#e3f0e0", "#efe3ef", "#f3f0d8", "#dff0ee")
 RADIUS = 0.15  # of a place's circle, where a link is of length 1
+BESIDE = 0.15  # a text on the right of a line; what is farther from it is not near
 DASHES: Any = (0, (4, 2))
 UNIT = 0.8  # inches that a link of length 1 takes
 MARGIN = 0.35  # round all lines
@@ -30,24 +32,30 @@ TITLE = 9  # points
 Box = tuple[float, float, float, float]  # left, bottom, right, top
 
 
-def draw(axes: Axes, scene: Scene, faces: bool = True, route: bool = True) -> Layout:
-    """Draw a map into axes; returns where everything is. Of a map with links that cross others
-    the faces are not drawn: those of the planar part are not the map's."""
+def draw(
+    axes: Axes, scene: Scene, faces: bool = True, route: bool = True, laid: Layout | None = None
+) -> Layout:
+    """Draw a map into axes, as it is ``laid`` out; returns where everything is. Of a map with links
+    that cross others the faces are not drawn: those of the planar part are not the map's."""
     world = scene.world
     at = scene.at
-    laid = layout(world, scene.ahead)
+    laid = laid or layout(world, scene.ahead)
     for gateway, line in laid.lines.items():
         _draw_line(axes, world, laid, gateway, line)
     for place, point in laid.places.items():
         _draw_place(axes, world, laid, place, point)
     texts: list[Box] = []
     if route:
-        dots = {gateway: _even(line) for gateway, line in laid.lines.items()}
+        number = {gateway: n for n, gateway in enumerate(laid.lines)}
+        dots = np.array([_even(line) for line in laid.lines.values()])
+        tree = KDTree(dots.reshape(-1, 2))
         for gateway, steps in scene.steps().items():
-            own = gateway, world.links[gateway]
-            others = np.array([line for end, line in dots.items() if end not in own])
-            spots = others.reshape(-1, 2)
-            texts.append(_draw_steps(axes, laid, gateway, steps, spots))
+            near = dots[number[gateway]].mean(0)
+            far = np.linalg.norm(dots[number[gateway]] - near, axis=1).max() + 2 * BESIDE
+            spots = np.array(tree.query_ball_point(near, far), int)
+            own = [number[gateway], number[world.links[gateway]]]
+            others = tree.data[spots[~np.isin(spots // len(dots[0]), own)]]
+            texts.append(_draw_steps(axes, laid, gateway, steps, others))
     taken = [(x - RADIUS, y - RADIUS, x + RADIUS, y + RADIUS) for x, y in laid.places.values()]
     stubs = [line for end, line in laid.lines.items() if end not in world.links]
     taken += [(*(line.min(0) - 0.05), *(line.max(0) + 0.05)) for line in stubs]
@@ -73,10 +81,11 @@ def draw(axes: Axes, scene: Scene, faces: bool = True, route: bool = True) -> La
 
 
 def title(scene: Scene, laid: Layout) -> str:
-    """What the map is, and how many links cross others."""
+    """What the map is, and how many links cross others; or that it is drawn plainly."""
     count = len(laid.crossing)
     others = "1 link crosses others" if count == 1 else f"{count} links cross others"
-    return f"{scene.title}, {others}" if count else scene.title
+    told = [scene.title, *[others] * bool(count), *[laid.note] * bool(laid.note)]
+    return ", ".join(told)
 
 
 @cache
@@ -223,14 +232,14 @@ def _draw_steps(
     axes: Axes, laid: Layout, gateway: Gateway, steps: list[int], others: Points
 ) -> Box:
     """The numbers of the steps that leave by a gateway, on the right of the way; not near other
-    lines, of which there are points. Returns where they are."""
+    lines, of which there are points (all those that may be near). Returns where they are."""
     line = _even(laid.lines[gateway])
     spots: list[tuple[float, int, Points, Points, Points]] = []
     for k in (12, 7, 17):  # the middle, but where another line is near
         ahead = (line[k + 2] - line[k - 2]) / np.linalg.norm(line[k + 2] - line[k - 2])
         right = np.array([ahead[1], -ahead[0]])
         away = np.linalg.norm(others - line[k] - 0.13 * right, axis=1).min(initial=1)
-        spots.append((-min(0.15, round(away, 3)), len(spots), line[k], ahead, right))
+        spots.append((-min(BESIDE, round(away, 3)), len(spots), line[k], ahead, right))
     *_, middle, ahead, right = min(spots, key=lambda spot: spot[:2])
     x, y = middle + 0.13 * right
     text = " ".join(map(str, steps[:3])) + (" …" if len(steps) > 3 else "")

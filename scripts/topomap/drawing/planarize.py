@@ -1,95 +1,204 @@
 """A planar part of a map, and ways for the other links through its faces."""
 
 import random
-from collections import defaultdict
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
+from topomap.drawing.mesh import TooLong
 from topomap.model.topology import Gateway, Place, TopologicalMap
 from topomap.runtime import nx
+from topomap.runtime.watch import Late, never
 
 LINK_ORDERS = 30  # of links, for a planar part
+WORK = 400_000  # gateways looked at for a planar part, before no further order is tried
+Link = tuple[Gateway, Gateway]
 
 
-def planar_part(world: TopologicalMap) -> TopologicalMap:
+def planar_part(world: TopologicalMap, work: int = WORK, late: Late = never) -> TopologicalMap:
     """The map with links enough to be connected, and all further ones that leave it planar.
     Which these are depends on the order of the links; of some orders the one by which the
-    rest cross the fewest links counts."""
+    rest cross the fewest links counts. Of a large map fewer orders are tried: none after the
+    first one once so much ``work`` is done, or when it is ``late``. Raises TooLong if it is late
+    before the first order is done."""
     if not world.genus():
         return world
-    draws = (random.Random(seed) for seed in range(LINK_ORDERS))
-    parts = (_planar(world, draw.sample(world.edges(), len(world.edges()))) for draw in draws)
+    edges = world.edges()
+    best: tuple[tuple[int, int], list[Link]] | None = None
+    for seed in range(LINK_ORDERS):
+        if best and work <= 0:
+            break
+        walks = Walks(world, ())
+        kept = walks.planar(random.Random(seed).sample(edges, len(edges)))
+        some = {*kept}
+        try:
+            walks.route([link for link in edges if link not in some], late)
+        except TooLong:
+            if best:
+                break
+            raise
+        work -= walks.work
+        crossed = len(walks.crossings), -2 * len(kept)
+        if best is None or crossed < best[0]:
+            best = crossed, kept
+    assert best is not None
+    links = {a: b for out, end in best[1] for a, b in ((out, end), (end, out))}
+    return TopologicalMap(world.slots, world.stars, links, world.landmarks)
 
-    def crossed(part: TopologicalMap) -> tuple[int, int]:
-        return len(routed(part, left_out(part, world))[1]), -len(part.links)
 
-    return min(parts, key=crossed)
-
-
-def left_out(part: TopologicalMap, world: TopologicalMap) -> list[tuple[Gateway, Gateway]]:
+def left_out(part: TopologicalMap, world: TopologicalMap) -> list[Link]:
     """The links of a map that a part of it lacks."""
     return [(out, end) for out, end in world.edges() if out not in part.links]
 
 
-def _planar(world: TopologicalMap, edges: list[tuple[Gateway, Gateway]]) -> TopologicalMap:
-    """The planar part by the links in this order."""
-    part = TopologicalMap(world.slots, world.stars, {}, world.landmarks)
-    joined = nx.utils.UnionFind(world.stars)
-    tree: list[tuple[Gateway, Gateway]] = []
-    others: list[tuple[Gateway, Gateway]] = []
-    for link in edges:
-        (p, _), (q, _) = link
-        (others if joined[p] == joined[q] else tree).append(link)
-        joined.union(p, q)
-    for out, end in tree + others:
-        links = {**part.links, out: end, end: out}
-        more = TopologicalMap(world.slots, world.stars, links, world.landmarks)
-        if (out, end) in tree or more.genus() == 0:
-            part = more
-    return part
-
-
 def routed(
-    part: TopologicalMap, further: Sequence[tuple[Gateway, Gateway]]
+    part: TopologicalMap, further: Sequence[Link], late: Late = never
 ) -> tuple[TopologicalMap, list[Place]]:
     """A map of genus 0 that has the further links as well, and of it the places that are not
     the map's: each is where a further link crosses a link, and straight through it go both.
-    A link is led through as few faces as can be, one after the other."""
-    stars, links = dict(part.stars), dict(part.links)
-    half = part.slots // 2
-    right, left = max(1, half // 2), half + max(1, half // 2)
-    crossings: list[Place] = []
-    for out, end in further:
-        at = out
-        for gateway in _crossed(TopologicalMap(part.slots, stars, links), out, end):
-            back = links[gateway]
-            crossings.append(place := f"x{len(crossings)}")
-            stars[place] = frozenset([0, right, half, left])
-            for a, b in (gateway, (place, half)), ((place, 0), back), (at, (place, right)):
-                links[a], links[b] = b, a
-            at = place, left
-        links[at], links[end] = end, at
-    return TopologicalMap(part.slots, stars, links, part.landmarks), crossings
+    A link is led through as few faces as can be, one after the other. Raises TooLong."""
+    walks = Walks(part, part.edges())
+    walks.route(further, late)
+    return walks.map(), walks.crossings
 
 
-def _crossed(world: TopologicalMap, out: Gateway, end: Gateway) -> list[Gateway]:
-    """The links that a line between two pending gateways crosses, from their right to their
-    left: as few as can be."""
-    face = {gateway: n for n, walk in enumerate(world.faces()) for gateway in walk}
-    beside: dict[int, list[Gateway]] = defaultdict(list)
-    for gateway, number in face.items():
-        beside[number].append(gateway)
+class Walks:
+    """The walks round the faces of a map that grows link by link.
 
-    def lies(gateway: Gateway) -> int:
-        place, slot = gateway
-        while (place, slot) not in world.links:
-            slot = (slot - 1) % world.slots
-        return face[place, slot]
+    Gateways go by numbers. A walk passes every gateway: by one that has a link it leaves, and
+    where it comes to a place it goes on with the next gateway counter-clockwise; so it does at a
+    pending gateway. Walks go by numbers too; where a link parts one, the shorter half gets a new
+    one. ``work`` counts the gateways that were looked at.
+    """
 
-    lines: dict[int, list[Gateway]] = {lies(out): []}
-    for number in (waiting := list(lines)):
-        for gateway in beside[number]:
-            over = face[world.links[gateway]]
-            if over not in lines:
-                lines[over] = [*lines[number], gateway]
-                waiting.append(over)
-    return lines[lies(end)]
+    def __init__(self, world: TopologicalMap, links: Iterable[Link]) -> None:
+        self.world = world
+        self.names = list(world.gateways())
+        self.number = {gateway: n for n, gateway in enumerate(self.names)}
+        self.before: list[int] = []  # the next gateway of the place, counter-clockwise
+        for star in world.stars.values():
+            first = len(self.before)
+            self.before += [first + len(star) - 1, *range(first, first + len(star) - 1)][
+                : len(star)
+            ]
+        self.twin = [-1] * len(self.names)  # the gateway at the other end
+        self.crossings: list[Place] = []
+        self.work = self.walks = 0
+        for out, end in links:
+            a, b = self.number[out], self.number[end]
+            self.twin[a], self.twin[b] = b, a
+        self._number_walks()
+
+    def _number_walks(self) -> None:
+        self.face = [-1] * len(self.names)
+        for start in range(len(self.names)):
+            if self.face[start] < 0:
+                self._mark(self._walk(start))
+
+    def _mark(self, walk: list[int]) -> None:
+        """Give a walk a number of its own."""
+        for gateway in walk:
+            self.face[gateway] = self.walks
+        self.walks += 1
+        self.work += len(walk)
+
+    def _next(self, gateway: int) -> int:
+        twin = self.twin[gateway]
+        return self.before[gateway if twin < 0 else twin]
+
+    def _walk(self, start: int) -> list[int]:
+        """The gateways of a walk, from one of them on."""
+        walk = [start]
+        while (following := self._next(walk[-1])) != start:
+            walk.append(following)
+        return walk
+
+    def _link(self, a: int, b: int) -> None:
+        """Join two pending gateways that are on one walk, which is parted."""
+        self.twin[a], self.twin[b] = b, a
+        one, other = [a], [b]
+        while True:  # round both halves at once, until the shorter one is done
+            for walk in one, other:
+                following = self._next(walk[-1])
+                if following == walk[0]:
+                    self._mark(walk)
+                    return
+                walk.append(following)
+
+    def planar(self, edges: Sequence[Link]) -> list[Link]:
+        """Of links in their order take those that connect the places, then the further ones that
+        leave the map planar: those between two gateways of one walk."""
+        joined = nx.utils.UnionFind(self.world.stars)
+        tree: list[Link] = []
+        others: list[Link] = []
+        for link in edges:
+            (p, _), (q, _) = link
+            (others if joined[p] == joined[q] else tree).append(link)
+            joined.union(p, q)
+        for out, end in tree:
+            a, b = self.number[out], self.number[end]
+            self.twin[a], self.twin[b] = b, a
+        self._number_walks()
+        kept = tree
+        for out, end in others:
+            a, b = self.number[out], self.number[end]
+            if self.face[a] == self.face[b]:
+                self._link(a, b)
+                kept.append((out, end))
+        return kept
+
+    def route(self, further: Iterable[Link], late: Late = never) -> None:
+        """Lead further links through the faces, across as few links as can be. Raises TooLong when
+        it is late."""
+        slots = self.world.slots
+        half = slots // 2
+        right, left = max(1, half // 2), half + max(1, half // 2)
+        for out, end in further:
+            if late():
+                raise TooLong
+            at, to = self.number[out], self.number[end]
+            for gateway in self._crossed(at, to):
+                self.crossings.append(place := f"x{len(self.crossings)}")
+                back, first = self.twin[gateway], len(self.names)
+                ahead, aside, behind, beyond = range(first, first + 4)
+                self.names += [(place, slot) for slot in (0, right, half, left)]
+                self.before += [beyond, ahead, aside, behind]
+                self.face += [self.face[n] for n in (gateway, gateway, back, back)]
+                self.twin += [back, -1, gateway, -1]
+                self.twin[gateway], self.twin[back] = behind, ahead
+                self._link(at, aside)
+                at = beyond
+            self._link(at, to)
+
+    def _crossed(self, out: int, end: int) -> list[int]:
+        """The links that a line between two pending gateways crosses, from their right to their
+        left: as few as can be."""
+        target = self.face[end]
+        start = self.face[out]
+        came: dict[int, tuple[int, int]] = {start: (-1, start)}  # by which gateway, from where
+        inside = [(start, out)]  # walks to look round, and a gateway of each
+        for number, gateway in inside:
+            if target in came:
+                break
+            walk = [one for one in self._walk(gateway) if self.twin[one] >= 0]
+            self.work += len(walk)
+            first = walk.index(min(walk))
+            for one in walk[first:] + walk[:first]:
+                over = self.face[self.twin[one]]
+                if over not in came:
+                    came[over] = one, number
+                    inside.append((over, self.twin[one]))
+        crossed: list[int] = []
+        number = target
+        while number != start:
+            gateway, number = came[number]
+            crossed.append(gateway)
+        return crossed[::-1]
+
+    def map(self) -> TopologicalMap:
+        """The map with all its links, and the crossings as places."""
+        stars = dict(self.world.stars)
+        for n, place in enumerate(self.crossings):
+            first = len(self.names) - 4 * (len(self.crossings) - n)
+            stars[place] = frozenset(slot for _, slot in self.names[first : first + 4])
+        names = self.names
+        links = {names[a]: names[b] for a, b in enumerate(self.twin) if b >= 0}
+        return TopologicalMap(self.world.slots, stars, links, self.world.landmarks)

@@ -123,15 +123,20 @@ def of_instance(seen: Experience, name: str, document: maps.Document) -> list[Sc
 def of_found(experience: Experience, name: str, found: Sequence[Found], whole: bool) -> list[Scene]:
     """Maps that were found in an experience from there, which are all that there are if
     ``whole``."""
-    return [
-        Scene(
-            *(experience.map_of(one.at), one.at, name, number, len(found), one.kind),
-            whole=whole,
-            marker=markers(experience, one.at),
-            rests=experience.starts | experience.looks,
-        )
-        for number, one in enumerate(found, 1)
-    ]
+    numbered = enumerate(found, 1)
+    return [one_found(experience, name, one, n, len(found), whole) for n, one in numbered]
+
+
+def one_found(
+    experience: Experience, name: str, one: Found, number: int, many: int, whole: bool
+) -> Scene:
+    """One of them: the ``number``-th of ``many`` (0: how many is not known)."""
+    return Scene(
+        *(experience.map_of(one.at), one.at, name, number, many, one.kind),
+        whole=whole,
+        marker=markers(experience, one.at),
+        rests=experience.starts | experience.looks,
+    )
 
 
 def of_document(document: maps.Document) -> list[Scene]:

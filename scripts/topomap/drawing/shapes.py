@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 from topomap.drawing.labels import gaps
 from topomap.model import words
 from topomap.model.topology import Gateway, Place, TopologicalMap
+from topomap.runtime.watch import Late, never
 
 if TYPE_CHECKING:
     from topomap.drawing.layout import Layout
@@ -32,8 +33,8 @@ Box = tuple[int, int, int, int]  # left, top, width, height
 class Drawing:
     """Where a map is drawn: places, of each gateway the line that leaves by it, y downwards; the
     links that cross others; the frame, x, y, width and height; faces, each its
-    outline and a point in it, the outer one without an outline; and where the landmarks of
-    places begin."""
+    outline and a point in it, the outer one without an outline; where the landmarks of
+    places begin; and a note if the drawing is plain (see ``layout.Layout``)."""
 
     places: Mapping[Place, Point]
     lines: Mapping[Gateway, Line]
@@ -41,19 +42,22 @@ class Drawing:
     frame: tuple[int, int, int, int]
     faces: Sequence[tuple[int, Line, Point]] = ()
     signs: Mapping[Place, Point] = field(default_factory=dict)
+    note: str = ""
 
 
-def drawing(world: TopologicalMap, ahead: Gateway | None, small: bool = False) -> Drawing | None:
+def drawing(
+    world: TopologicalMap, ahead: Gateway | None, small: bool = False, late: Late = never
+) -> Drawing | None:
     """A drawing of a map (see ``layout.layout``), made in as few steps as leave it legible. A
     small one has no faces, and there is none if the gateways of a place cannot be told apart."""
     from topomap.drawing import layout
 
     for steps in FEW if small else MANY:
-        laid = layout.layout(world, ahead, steps)
+        laid = layout.layout(world, ahead, steps, late)
         unit, places, lines = _scaled(laid, world)
         narrowest = min((_narrowest(lines, *star) for star in world.stars.items()), default=360)
         apart = all(math.dist(p, q) > APART for p, q in combinations(places.values(), 2))
-        if apart and narrowest > NARROW:
+        if (apart and narrowest > NARROW) or laid.note:
             break
     if small and not narrowest:
         return None
@@ -77,7 +81,7 @@ def drawing(world: TopologicalMap, ahead: Gateway | None, small: bool = False) -
                 outline = unit * laid.outline(face)
                 middle = _point(inside(outline, upwards))
                 faces.append((number, [_point(p) for p in outline], middle))
-    return Drawing(places, lines, laid.crossing, frame, faces, signs)
+    return Drawing(places, lines, laid.crossing, frame, faces, signs, laid.note)
 
 
 def _frame(points: Sequence[Point], texts: Sequence[Box]) -> Box:
@@ -200,6 +204,8 @@ def _point(point: Any) -> Point:
 def part_of(whole: Drawing, world: TopologicalMap) -> Drawing | None:
     """The drawing of a map that has grown to the whole one; None if it would show a crossing
     that it need not have, or gateways cannot be told apart."""
+    if whole.note:
+        return None
     crossing = [link for link in whole.crossing if link[0] in world.links]
     if crossing and world.genus() == 0:
         return None

@@ -19,6 +19,7 @@ from matplotlib.path import Path as Outline
 from matplotlib.textpath import TextPath
 from matplotlib.transforms import Bbox
 
+from topomap.drawing.layout import Layout
 from topomap.drawing.panel import (
     AGENT,
     CROSSING,
@@ -61,9 +62,11 @@ def _wrapped(text: str, inches: float) -> list[str]:
     return [line.rstrip() for line in lines]
 
 
-def legend(figure: Figure, scenes: Sequence[Scene], inches: float) -> Legend:
-    """What the signs mean, of those that occur, in lines of some width at the foot of a
-    figure."""
+def legend(
+    figure: Figure, scenes: Sequence[Scene], drawn: Sequence[Layout], inches: float
+) -> Legend:
+    """What the signs mean, of those that occur where the scenes are drawn, in lines of some width
+    at the foot of a figure."""
     worlds = [scene.world for scene in scenes]
     dot = Line2D([], [], marker=Outline.circle((0, 1), 0.4), ls="", mfc=INK, mew=0, ms=11)
     place: Any = {"marker": "o", "ls": "", "mec": INK, "ms": 8}
@@ -75,9 +78,9 @@ def legend(figure: Figure, scenes: Sequence[Scene], inches: float) -> Legend:
         pending: Any = {"marker": "o", "mfc": "white", "mec": PENDING, "markevery": [1]}
         line = Line2D([0, 1], [0, 0], color=PENDING, lw=1.8, **pending)
         entries.append((line, "pending gateway"))
-    if any(world.genus() for world in worlds):
+    if any(laid.crossing for laid in drawn):
         entries.append((Line2D([], [], color=CROSSING, lw=1.6, ls=DASHES), "link that crosses"))
-    if any(world.genus() == 0 and len(world.faces()) > 1 for world in worlds):
+    if any(len(laid.faces) > 1 for laid in drawn):
         entries.append((Patch(fc=FACES[0]), "face"))
     if any(any(world.landmarks.values()) for world in worlds):
         entries.append((Line2D([], [], mfc=SIGNED, **place), "place with landmarks"))
@@ -105,16 +108,21 @@ def _inches(figure: Figure, made: Legend) -> tuple[float, float]:
     return box.width / figure.dpi, box.height / figure.dpi
 
 
-def picture(scenes: Sequence[Scene], columns: int = 3) -> Figure:
+def picture(
+    scenes: Sequence[Scene], columns: int = 3, laid: Sequence[Layout | None] = ()
+) -> Figure:
     """Maps side by side, in one scale, each in the middle of as much room as the largest in its
-    row or column needs, below a title that is not wider; and a legend."""
+    row or column needs, below a title that is not wider; and a legend. They are drawn as they are
+    ``laid`` out, if that is known."""
     with mpl.rc_context(STYLE):
         figure = Figure()
         FigureCanvasAgg(figure)
         columns = min(columns, len(scenes))
         panels = [figure.add_axes((0, 0, 1, 1)) for _ in scenes]
-        for scene, axes in zip(scenes, panels, strict=True):
-            draw(axes, scene)
+        drawn = [
+            draw(axes, scene, laid=one)
+            for scene, axes, one in zip(scenes, panels, laid or [None] * len(scenes), strict=True)
+        ]
         spans = UNIT * np.array([_spans(axes) for axes in panels])
         lines = [line for axes in panels for line in axes.get_title().splitlines()]
         longest = max(extent(line, TITLE) for line in lines) + 0.2
@@ -126,7 +134,7 @@ def picture(scenes: Sequence[Scene], columns: int = 3) -> Figure:
         rows = range(0, len(scenes), columns)
         heads = [max(map(len, titles[n : n + columns])) * TITLE * 1.2 / 72 + 0.15 for n in rows]
         high = [max(spans[n : n + columns, 1]) for n in rows]
-        foot = _inches(figure, legend(figure, scenes, sum(wide)))[1]
+        foot = _inches(figure, legend(figure, scenes, drawn, sum(wide)))[1]
         size = np.array([sum(wide), sum(heads) + sum(high) + foot])
         figure.set_size_inches(*size)
         for n, (axes, told) in enumerate(zip(panels, titles, strict=True)):

@@ -3,10 +3,11 @@ triangles that must not fold, and of places that keep apart."""
 
 from collections import defaultdict
 from collections.abc import Sequence
-from itertools import combinations, pairwise
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
+from scipy.spatial import KDTree
 
 from topomap.drawing.mesh import BENDS, Mesh, Numbers, Points, cross
 
@@ -16,6 +17,7 @@ Term = tuple[Numbers, Points, Points, Points]
 STUB = 0.36  # the length of a stub, where a link is of length 1
 FIRST = 0.22  # the length of a link's piece at a place
 LEAVING = 0.16  # what that must be, and of a stub, to be seen outside the place's circle
+SIDES = (0, 1), (0, 2), (1, 2)  # of a triangle, by its corners
 PIECE, LOOP = 0.7, 1.6  # the lengths of a link's piece up to a crossing, and of a loop
 
 
@@ -66,25 +68,8 @@ class Springs:
         real = [gateway for gateway in world.gateways() if gateway[0] not in mesh.crossings]
         starts = [(mesh.place[p], mesh.lines[p, s][1], s) for p, s in real]
         self.gateways = np.array(starts).T
-        at = defaultdict(list)
-        for line in mesh.lines.values():
-            at[line[0]].append(line)
-        beside: dict[int, set[int]] = defaultdict(set)  # of each point those of its lines, and
-        for line in mesh.lines.values():  # where they leave a place the lines that leave it
-            for point in line:
-                beside[point] |= set(line)
-            beside[line[1]] |= {other[1] for other in at[line[0]]}
-        pairs = {(p, q) for walk in mesh.walks for p in walk for q in walk if p < q}
-        pairs |= set(combinations(range(len(world.stars)), 2))
-        apart = [
-            pair
-            for pair in sorted(pairs)
-            if pair[1] < len(world.stars) or pair[1] not in beside[pair[0]]
-        ]
-        self.pairs = np.array(apart, int).reshape(-1, 2).T
-        one, other = self.pairs
-        kinds = [other < self.places, other < len(world.stars), one < self.places]
-        self.near = np.select(kinds, self.NEAR[:3], self.NEAR[3])
+        self.neighbours = Neighbours(mesh, self.places, self.NEAR)
+        self.fixed = self._fixed_columns()
 
     def norths(self, points: Points) -> Points:
         """The norths that fit the gateways best."""
@@ -98,11 +83,9 @@ class Springs:
         """Whether all lines leave their places, and no places lie on each other."""
         points = x[: 2 * self.size].reshape(-1, 2)
         a, b = self.sides[:, self.firm > 1]
-        c, d = self.pairs[:, self.pairs[1] < self.places]
-        leaving, apart = (
-            np.linalg.norm(points[q] - points[p], axis=1) for p, q in ((a, b), (c, d))
-        )
-        return bool((leaving > LEAVING).all() and (apart > STUB).all())
+        leaving = np.linalg.norm(points[b] - points[a], axis=1)
+        together = KDTree(points[: self.places]).query_pairs(STUB)
+        return bool((leaving > LEAVING).all() and not together)
 
     def reach(self, x: Points, step: Points) -> float:
         """How much of a step goes until a triangle is folded."""
@@ -124,82 +107,145 @@ class Springs:
         roots = roots[:, real]
         return float(np.min(roots[roots > 0], initial=np.inf))
 
+    def _fixed_columns(self) -> list[Numbers]:
+        """Of the terms, but for the last kind of them, which numbers they depend on; in the order
+        in which a call gives them."""
+        corners, ends = _both(*self.triangles), _both(*self.sides)
+        edges = np.hstack([self.triangles[[n, m]] for n, m in SIDES])
+        axes = [np.hstack([2 * numbers, 2 * numbers + 1]) for numbers in (edges, self.bends)]
+        place, end, _ = self.gateways
+        turning = np.vstack([_both(place, end), 2 * self.size + place[None]])
+        return [corners, axes[0], ends, ends, axes[1], turning]
+
     def __call__(self, x: Points) -> tuple[float, list[Term]]:
-        """The energy, infinite if a triangle is folded, and its terms."""
+        """The energy, infinite if a triangle is folded, and its terms; the last of these are those
+        of what is near to each other."""
         weight = self.weight
         points, norths = x[: 2 * self.size].reshape(-1, 2), x[2 * self.size :]
-        total = 0.0
-        terms: list[Term] = []
-
-        def add(
-            numbers: Sequence[Numbers], ways: Sequence[Points], pull: Points, stiff: Any
-        ) -> None:
-            columns = np.concatenate([np.stack([2 * n, 2 * n + 1]) for n in numbers])
-            terms.append((columns, np.hstack(ways).T, pull, np.broadcast_to(stiff, pull.shape)))
-
         a, b, c = self.triangles
         u, v = points[b] - points[a], points[c] - points[a]
         area = cross(u, v)
-        if area.min() <= 0:
+        if not area.min() > 0:
             return np.inf, []
+        shapes: list[tuple[Points, Points, Any]] = []  # all of a term but the columns
         squares = (u**2 + v**2 + (v - u) ** 2).sum(1)
-        total += weight * (np.log(squares) - np.log(area)).sum()
-        at_b = np.stack([v[:, 1], -v[:, 0]], 1) / area[:, None]
-        at_c = np.stack([-u[:, 1], u[:, 0]], 1) / area[:, None]
+        total = weight * (np.log(squares) - np.log(area)).sum()
+        at_b, at_c = np.stack([v[:, 1], -v[:, 0]]) / area, np.stack([-u[:, 1], u[:, 0]]) / area
         every = np.full(len(area), weight)
-        add([a, b, c], [-at_b - at_c, at_b, at_c], -every, weight)
-        for start, end, side in (a, b, u), (a, c, v), (b, c, v - u):
-            for axis in np.eye(2):
-                along = np.tile(axis, (len(side), 1))
-                add(
-                    [start, end],
-                    [-along, along],
-                    2 * weight * side @ axis / squares,
-                    2 * weight / squares,
-                )
+        shapes.append((np.vstack([-at_b - at_c, at_b, at_c]), -every, weight))
+        sides = np.concatenate([u, v, v - u]).T.ravel()
+        stiff = np.tile(2 * weight / squares, 6)
+        shapes.append((_ways((-1, 1), len(sides)), stiff * sides, stiff))
 
         a, b = self.sides
         along, length = _unit(points[b] - points[a])
         stretch = length / self.lengths - 1
         force = np.where(stretch > 0, self.STRETCH, self.SQUEEZE) * self.firm
         total += (force * self.lengths * stretch**2).sum()
-        add([a, b], [-along, along], 2 * force * stretch, 2 * force / self.lengths)
-        aside = np.stack([-along[:, 1], along[:, 0]], 1)
+        shapes.append((_apart(along), 2 * force * stretch, 2 * force / self.lengths))
         stiff = 2 * force * np.maximum(0, stretch) / length
-        add([a, b], [-aside, aside], 0 * stretch, stiff)
+        shapes.append((_apart(_aside(along)), 0 * stretch, stiff))
 
         a, b, c = self.bends
         bend = points[a] - 2 * points[b] + points[c]
         total += (self.stiff * (bend**2).sum(1)).sum()
-        for axis in np.eye(2):
-            along = np.tile(axis, (len(bend), 1))
-            add(
-                [a, b, c],
-                [along, -2 * along, along],
-                2 * self.stiff * (bend @ axis),
-                2 * self.stiff,
-            )
-
-        a, b = self.pairs
-        side = points[b] - points[a]
-        close = (side**2).sum(1) < self.near**2
-        a, b = a[close], b[close]
-        along, length = _unit(side[close])
-        lack = self.near[close] - length
-        total += self.apart * (lack**2).sum()
-        add([a, b], [-along, along], -2 * self.apart * lack, 2 * self.apart)
+        stiff = np.tile(2 * self.stiff, 2)
+        shapes.append((_ways((1, -2, 1), bend.size), stiff * bend.T.ravel(), stiff))
 
         a, b, slot = self.gateways
         along, length = _unit(points[b] - points[a])
-        aside = np.stack([-along[:, 1], along[:, 0]], 1) / length[:, None]
+        aside = _apart(_aside(along) / length[:, None])
         off = np.arctan2(along[:, 1], along[:, 0]) - norths[a] + 2 * np.pi * slot / self.slots
         total += self.COMPASS * (1 - np.cos(off)).sum()
         stiff = self.COMPASS * np.maximum(np.cos(off), self.LEAST)
-        add([a, b], [-aside, aside], self.COMPASS * np.sin(off), stiff)
-        columns, ways, pull, stiff = terms.pop()
-        columns = np.concatenate([columns, 2 * self.size + a[None]])
-        terms.append((columns, np.vstack([ways, -np.ones(len(a))]), pull, stiff))
+        turning = np.vstack([aside, -np.ones(len(a))])
+        shapes.append((turning, self.COMPASS * np.sin(off), stiff))
+        terms = [
+            (columns, ways, pull, np.broadcast_to(stiff, pull.shape))
+            for columns, (ways, pull, stiff) in zip(self.fixed, shapes, strict=True)
+        ]
+
+        a, b, near = self.neighbours(points)
+        along, length = _unit(points[b] - points[a])
+        lack = near - length
+        total += self.apart * (lack**2).sum()
+        firm = np.full(len(a), 2 * self.apart)
+        terms.append((_both(a, b), _apart(along), -2 * self.apart * lack, firm))
         return float(total), terms
+
+
+class Neighbours:
+    """Which points of a mesh are to keep apart, and are nearer to each other than they should be:
+    places and crossings, and points of lines and whatever else is on a walk with them, but for
+    what is on the same line, or leaves a place beside it. Those that are not far are looked for
+    again only when some point has moved far enough."""
+
+    ROOM = 0.3  # how much farther than is near is not far
+
+    def __init__(self, mesh: Mesh, places: int, near: tuple[float, float, float, float]) -> None:
+        self.near, self.places, self.stars = near, places, len(mesh.world.stars)
+        self.size = 1 + max(max(walk, default=0) for walk in mesh.walks)
+        on = {(point, number) for number, walk in enumerate(mesh.walks) for point in walk}
+        self.many = len(mesh.walks)
+        self.on = np.array(sorted(point * self.many + number for point, number in on))
+        self.walks = np.full((2, self.size), -1)  # of each point of a line
+        for point, number in sorted(on):
+            if point >= self.stars:
+                self.walks[int(self.walks[0, point] >= 0), point] = number
+        first = defaultdict(set)
+        beside = set()
+        for line in mesh.lines.values():
+            first[line[0]].add(line[1])
+            beside |= {(p, q) for p in line for q in line if p < q}
+        for ends in first.values():
+            beside |= {(p, q) for p in ends for q in ends if p < q}
+        self.beside = np.array(sorted(p * self.size + q for p, q in beside), int)
+        self.at: Points | None = None
+
+    def __call__(self, points: Points) -> tuple[Numbers, Numbers, Points]:
+        """Pairs of points, and how far apart they should be."""
+        points = points[: self.size]
+        if self.at is None or abs(points - self.at).max() > self.ROOM / 3:
+            self.at, self.pairs, self.apart = points.copy(), *self._not_far(points)
+        a, b = self.pairs
+        side = points[b] - points[a]
+        close = (side**2).sum(1) < self.apart**2
+        return a[close], b[close], self.apart[close]
+
+    def _not_far(self, points: Points) -> tuple[Numbers, Points]:
+        stars = KDTree(points[: self.stars])
+        far = self.near[0] + self.ROOM
+        one, other = stars.query_pairs(far, output_type="ndarray").T
+        three, four = KDTree(points).query_pairs(self.near[2] + self.ROOM, output_type="ndarray").T
+        line = four >= self.stars  # else the pair is there already
+        three, four = three[line], four[line]
+        shared = np.zeros(len(three), bool)
+        for walks in self.walks:
+            shared |= (walks[four] >= 0) & np.isin(three * self.many + walks[four], self.on)
+        shared &= ~np.isin(three * self.size + four, self.beside)
+        pairs = np.hstack([[one, other], [three[shared], four[shared]]])
+        pairs = pairs[:, np.lexsort(pairs)]
+        one, other = pairs
+        kinds = [other < self.places, other < self.stars, one < self.places]
+        return pairs, np.select(kinds, self.near[:3], self.near[3])
+
+
+def _both(*points: Numbers) -> Numbers:
+    """The numbers of points, both coordinates of each."""
+    return np.concatenate([np.stack([2 * n, 2 * n + 1]) for n in points])
+
+
+def _ways(factors: Sequence[int], size: int) -> Points:
+    return np.repeat(np.array(factors, float)[:, None], size, axis=1)
+
+
+def _apart(along: Points) -> Points:
+    """How the distance of two points grows with their coordinates."""
+    return np.vstack([-along.T, along.T])
+
+
+def _aside(along: Points) -> Points:
+    return np.stack([-along[:, 1], along[:, 0]], 1)
 
 
 def _unit(side: Points) -> tuple[Points, Points]:

@@ -51,10 +51,12 @@ def body(
         kind = "crossing apart" if (out, end) in apart or (end, out) in apart else "crossing"
         parts += _lines(kind, [path(drawn.lines[out])])
     if not small:
+        numbers = {gateway: number for number, gateway in enumerate(drawn.lines)}
+        dots = Dots([*drawn.lines.values()])
         for gateway, end in world.edges():
             along = sorted(steps.get(gateway, []) + steps.get(end, []))
-            others = [line for other, line in drawn.lines.items() if other not in (gateway, end)]
-            parts.append(_along(drawn.lines[gateway], along, others))
+            own = {numbers[gateway], numbers[end]}
+            parts.append(_along(drawn.lines[gateway], along, dots, own))
     for place, (x, y) in drawn.places.items():
         kind = "place strange" if place in strange else "place"
         kind += " signed" if world.landmarks.get(place) else ""
@@ -91,11 +93,26 @@ def _lines(kind: str, paths: Sequence[str]) -> list[str]:
     return [f'<path class="{kind}" d="{"".join(paths)}"/>'] if paths else []
 
 
-def _along(line: Line, steps: Sequence[int], others: Sequence[Line]) -> str:
+class Dots:
+    """Points on lines, nine on each, to be found by where they are."""
+
+    def __init__(self, lines: Sequence[Line]) -> None:
+        from scipy.spatial import KDTree  # it takes its time
+
+        self.points = [_at(line, n / 10) for line in lines for n in range(1, 10)]
+        self.tree = KDTree(self.points)
+
+    def far(self, spot: Point, own: Collection[int]) -> int:
+        """How far a point is from the lines that are not its own, up to a length that is enough."""
+        near = self.tree.query_ball_point(spot, APART // 2)
+        others = (self.points[n] for n in near if n // 9 not in own)
+        return min([APART // 2, *(int(math.dist(spot, dot)) for dot in others)])
+
+
+def _along(line: Line, steps: Sequence[int], dots: Dots, own: Collection[int]) -> str:
     """The steps along a link, in its middle, or where other lines are not so near."""
-    dots = [_at(other, n / 10) for other in others for n in range(1, 10)]
     spots = [_at(line, share) for share in (0.5, 0.3, 0.7)]
-    far = [min([APART // 2, *(int(math.dist(spot, dot)) for dot in dots)]) for spot in spots]
+    far = [dots.far(spot, own) for spot in spots]
     x, y = spots[far.index(max(far))]
     text = " ".join(map(str, steps[:4])) + (" …" if len(steps) > 4 else "")
     return f'<text class="along" x="{x}" y="{y}">{text}</text>'

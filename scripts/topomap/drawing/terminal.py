@@ -21,6 +21,7 @@ from topomap.drawing.mesh import Points
 from topomap.drawing.scenes import Scene
 from topomap.model.topology import Gateway, Place, gid, label
 from topomap.runtime.errors import printable
+from topomap.runtime.watch import Late, never
 
 Cell = tuple[int, int]  # row and column
 PLACE, AGENT, LINK, CROSSING, PENDING, SIGN, FACE = "1", "1;33", "", "31", "34", "1;32", "2"
@@ -76,20 +77,23 @@ def _in_colour(text: str, colour: str) -> str:
     return f"\x1b[{colour}m{text}\x1b[0m" if colour else text
 
 
-def drawn(scene: Scene, width: int, coloured: bool = False) -> str:
+def drawn(scene: Scene, width: int, coloured: bool = False, late: Late = never) -> tuple[str, str]:
     """A map in a terminal of that many columns. Maps of lines are as wide as they need; maps of
-    dots fit, unless numbers would fall onto each other: then they are up to four times as wide."""
+    dots fit, unless numbers would fall onto each other: then they are up to four times as wide.
+    The second text says that the drawing is plain, if it is (see ``layout``)."""
     world = scene.world
-    laid = straight(world, scene.ahead)
+    laid = straight(world, scene.ahead, late)
     letters = _letters(laid) if laid else {}
     canvas = boxes(scene, laid, letters) if laid else None
     if laid is None or canvas is None:
-        laid, letters = layout(world, scene.ahead), {}
+        laid, letters = layout(world, scene.ahead, late=late), {}
         canvas = dots(scene, laid, width)
-    told = [*scene.title.rsplit("\n", 1), "", *canvas.lines(coloured), ""]
+    title, sizes = scene.title.rsplit("\n", 1)
+    sizes += f", {laid.note}" * bool(laid.note)
+    told = [title, sizes, "", *canvas.lines(coloured), ""]
     for line in words(scene, laid, letters):
         told += textwrap.wrap(printable(line), width, subsequent_indent="    ")
-    return "\n".join([*map(printable, told[:2]), *told[2:]]) + "\n"
+    return "\n".join([*map(printable, told[:2]), *told[2:]]) + "\n", laid.note
 
 
 def _letters(laid: Layout) -> dict[Gateway, str]:

@@ -17,9 +17,9 @@ from topomap.model.found import steps_json
 from topomap.model.topology import Gateway, Place, gid
 from topomap.runtime import formats, nx
 from topomap.runtime.errors import printable
-from topomap.runtime.limits import EXPORTS
 
 if TYPE_CHECKING:
+    from topomap.drawing.layout import Layout
     from topomap.drawing.mesh import Points
 
 Node = tuple[Place | Gateway, dict[str, str]]
@@ -81,13 +81,10 @@ def node_link(scene: Scene) -> str:
     return json.dumps(formats.headed(nx.node_link_data(graph_of(scene), edges="edges"))) + "\n"
 
 
-def _drawing(scene: Scene) -> tuple[list[Node], list[Edge]]:
+def _drawing(scene: Scene, laid: "Layout") -> tuple[list[Node], list[Edge]]:
     """The map where ``draw`` has it, in attributes of Graphviz, lengths in points. The stub of a
     pending gateway ends in a node of its own; a link that crosses others is dashed."""
-    from topomap.drawing.layout import layout  # scipy takes its time
-
     world = scene.world
-    laid = layout(world, scene.ahead)
     steps = scene.steps()
     nodes: list[Node] = []
     edges: list[Edge] = []
@@ -124,7 +121,11 @@ def _spline(line: "Points", ends: int) -> str:
     return " ".join([_point(line[0]), *parts])
 
 
-def dot(scene: Scene) -> str:
+def _label(scene: Scene, laid: "Layout") -> str:
+    return f"{scene.title}{f', {laid.note}' * bool(laid.note)}"
+
+
+def dot(scene: Scene, laid: "Layout") -> str:
     """The map in the language of Graphviz: ``neato -n2`` draws it as ``draw`` does."""
 
     def name(node: Place | Gateway) -> str:
@@ -134,8 +135,8 @@ def dot(scene: Scene) -> str:
         quoted = ((k, escaped(v).replace('"', '\\"')) for k, v in attributes.items())
         return "[" + ", ".join(f'{key}="{value}"' for key, value in quoted) + "];"
 
-    nodes, edges = _drawing(scene)
-    lines = [f"  graph {told({**COMMON['graph'], 'label': scene.title})}"]
+    nodes, edges = _drawing(scene, laid)
+    lines = [f"  graph {told({**COMMON['graph'], 'label': _label(scene, laid)})}"]
     lines.append(f"  node {told(COMMON['graph_nodes'])}")
     lines += [f"  {name(node)} {told(attributes)}" for node, attributes in nodes]
     lines += [f"  {name(a)} -- {name(b)} {told(attributes)}" for a, b, attributes in edges]
@@ -147,7 +148,7 @@ def escaped(text: str) -> str:
     return "\\n".join(printable(line).replace("\\", "\\\\") for line in text.split("\n"))
 
 
-def clingraph(scene: Scene) -> str:
+def clingraph(scene: Scene, laid: "Layout") -> str:
     """The map as facts of clingraph, for its default graph and the engine neato."""
 
     def told(kind: str, identifier: str, attributes: dict[str, str]) -> Iterator[str]:
@@ -156,8 +157,8 @@ def clingraph(scene: Scene) -> str:
             string = clingo.String(escaped(value))
             yield f"attr({kind},{identifier},({key},value),{string})."
 
-    nodes, edges = _drawing(scene)
-    facts = [*told("graph", "default", {**COMMON["graph"], "label": scene.title})]
+    nodes, edges = _drawing(scene, laid)
+    facts = [*told("graph", "default", {**COMMON["graph"], "label": _label(scene, laid)})]
     facts += told("graph_nodes", "default", COMMON["graph_nodes"])
     for node, attributes in nodes:
         facts += [f"node({_term(node)}).", *told("node", _term(node), attributes)]
@@ -171,6 +172,5 @@ def _term(node: Place | Gateway) -> str:
     return f"({node[0]},{node[1]})" if isinstance(node, tuple) else str(node)
 
 
-WRITERS: dict[str, Callable[[Scene], str]] = dict(
-    zip(EXPORTS, (graphml, node_link, dot, clingraph), strict=True)
-)
+WRITERS: dict[str, Callable[[Scene], str]] = {"graphml": graphml, "json": node_link}
+DRAWN: dict[str, "Callable[[Scene, Layout], str]"] = {"dot": dot, "clingraph": clingraph}

@@ -4,12 +4,12 @@ A path is named by the first step that travels along it; one that no step travel
 its only place, as in ``4.1``.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 from topomap.model.experience import DState, Experience
-from topomap.model.topology import gid
+from topomap.model.topology import TopologicalMap, gid
 from topomap.model.words import plural
 
 Name = int | str  # of a path
@@ -42,20 +42,26 @@ class NamedException:
 
 def exceptions_of(experience: Experience, at: Sequence[DState]) -> list[NamedException]:
     """The exceptions of the map of a hypothesis, given by its dstate after each step."""
-    world = experience.map_of(tuple(at))
+    steps: dict[DState, int] = {}
+    for step, (turn, (place, slot)) in enumerate(zip(experience.turns, at, strict=False), 1):
+        if turn is not None:
+            steps.setdefault(experience.way_out(step, (place, slot)), step)
+            steps.setdefault(at[step], step)
+    return named_exceptions(experience.map_of(tuple(at)), steps)
+
+
+def named_exceptions(world: TopologicalMap, steps: Mapping[DState, int]) -> list[NamedException]:
+    """The exceptions of a map, of which it is known which step came first to each gateway that has
+    a link."""
     found = list(world.exceptions())
     if not found:
         return []
-    steps: dict[DState, int] = {}  # the first one along each axis, in either direction
-    for step, (turn, (place, slot)) in enumerate(zip(experience.turns, at, strict=False), 1):
-        if turn is not None:
-            out = experience.way_out(step, (place, slot))
-            for gateway in (out, world.opposite(out)):
-                steps.setdefault(gateway, step)
-            for gateway in (at[step], world.opposite(at[step])):
-                steps.setdefault(gateway, step)
+    across: dict[DState, int] = {}  # the first step along each axis, in either direction
+    for gateway, step in steps.items():
+        for end in (gateway, world.opposite(gateway)):
+            across[end] = min(step, across.get(end, step))
     names: list[Name] = [
-        min((steps[dstate] for dstate in path if dstate in steps), default=0) or gid(path[0])
+        min((across[dstate] for dstate in path if dstate in across), default=0) or gid(path[0])
         for path in world.paths()
     ]
     return [

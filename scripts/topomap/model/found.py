@@ -25,6 +25,6 @@ class Found:
     misread: tuple[Misread, ...] = ()
 
 
-def steps_json(at: Sequence[Gateway]) -> list[list[int]]:
-    """The dstate after each step, ``[[T,P,S], ...]``."""
-    return [[step, place, slot] for step, (place, slot) in enumerate(at)]
+def steps_json(at: Sequence[Gateway], first: int = 0) -> list[list[int]]:
+    """The dstate after each step, ``[[T,P,S], ...]``, of which this is the first."""
+    return [[step, place, slot] for step, (place, slot) in enumerate(at, first)]

@@ -17,10 +17,11 @@ from topomap.model.query import Query
 from topomap.page.replay import SHOWN, Step, replay
 from topomap.runtime.errors import InputError
 from topomap.runtime.limits import LARGEST
-from topomap.runtime.watch import Attempt, Watch
+from topomap.runtime.watch import Attempt, Late, Watch
 from topomap.solver import solving
 from topomap.solver.enumeration import best_maps
 
+SHARE = 0.2  # of the time that is left for pictures, for one of them
 SMALL = 100  # places in a small picture, at most
 
 
@@ -146,11 +147,21 @@ class Chapter:
         for rank in range(1, SHOWN):
             yield from self._draw_shown(rank)
 
+    def _late(self) -> Late:
+        """What tells when a picture has had its share of the time that is left for pictures."""
+        at = self.watch.deadline.at
+        left = 0.0 if at is None else at - time.monotonic()
+        end = time.monotonic() + left * SHARE
+        return lambda: self.watch.late() or time.monotonic() > end
+
     def _draw_best(self, some: list[Scene]) -> Iterator[None]:
         for scene in some:
             self.watch.title(f"picture of map {scene.number}")
             if len(scene.world.stars) <= MOST_DRAWN:
-                self._keep(tuple(scene.at), shapes.drawing(scene.world, scene.ahead))
+                drawn = shapes.drawing(scene.world, scene.ahead, late=self._late())
+                self._keep(tuple(scene.at), drawn)
+                if drawn and drawn.note:
+                    self.faults.append(f"picture of map {scene.number}: {drawn.note}")
                 yield
 
     def _draw_shown(self, rank: int) -> Iterator[None]:
@@ -169,6 +180,6 @@ class Chapter:
                 drawn = next((part for part in parts if part), None)
                 if drawn is None:
                     scene = Scene(world, at, self.name, rests=self.seen.starts | self.seen.looks)
-                    drawn = shapes.drawing(world, scene.ahead, small=True)
+                    drawn = shapes.drawing(world, scene.ahead, small=True, late=self._late())
                 self._keep(at, drawn)
                 yield

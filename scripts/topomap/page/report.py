@@ -241,7 +241,7 @@ def _shown(about: Chapter, at: Cube, number: int, glyphs: Glyphs) -> dict[str, A
     return {
         "picture": Markup(picture),
         "letters": len(picture) + len(body) * (len(glyphs.names) > known),
-        "sizes": _sizes(scene),
+        "sizes": _sizes(scene) + _note(drawn),
         "at": f"at place {place}, gateway {slot}",
         "next": next,
         "refused": words.refused(refused, step + 1),
@@ -261,6 +261,10 @@ def _last(drawn: Drawing, at: Cube) -> str:
 
 def _sizes(scene: Scene) -> str:
     return scene.title.splitlines()[1]
+
+
+def _note(drawn: Drawing | None) -> str:
+    return f", {drawn.note}" if drawn and drawn.note else ""
 
 
 def _map(
@@ -293,7 +297,7 @@ def _map(
     return {
         "number": number,
         "picture": Markup(picture),
-        "sizes": _sizes(scene),
+        "sizes": _sizes(scene) + _note(drawn),
         "axioms": axioms_of(seen, scene.at).words,
         "exceptions": [one.words for one in exceptions_of(seen, scene.at)],
         "numbered": bool(drawn and drawn.faces),

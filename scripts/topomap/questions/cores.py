@@ -1,28 +1,49 @@
 """Reasons none of which can be spared: the unsatisfiable cores that clingo gives, made small,
-and verified by a map that breaks each."""
+and verified by a map that breaks each.
 
+A reason is single, such as ``view(7,1)``: the views after steps 7 and 1 differ, so they are not of
+one place. Or it is gathered: a whole rule, such as ``planarity``, or what is seen after one step,
+such as ``view(7)``. A single reason is in force as long as all gathered ones are of which it is a
+part: ``view(7,1)`` is a part of ``view(7)`` and of ``view(1)``.
+"""
+
+import math
 import random
-import re
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from contextlib import suppress
 from typing import Any
 
 import clingo
 
 from topomap.model.experience import DState
-from topomap.questions.reasons import FIRST, RULE_NAMES
+from topomap.questions.reasons import (
+    FIRST,
+    RULE_NAMES,
+    RULES,
+    gathered,
+    kind_of,
+    numbers_of,
+    of_one_step,
+)
 from topomap.runtime.status import INTERRUPT
 from topomap.runtime.watch import Stopped
 from topomap.solver.programs import Program
 from topomap.solver.threads import Put
 
 REASON_ORDERS = 12  # in which reasons are tried, at most
+NEAR = -1  # the order in which reasons whose steps are near to each other are spared last
 CONFLICTS, CALLS = 3_000, 500  # of the solver, until no further order is tried
 TIDYING = 100  # reasons that are tried, so that a map breaks few others
+GROWING = 60  # conflicts, for each gathered reason that is tried so that a map breaks few others
 
 
 def dstates(symbols: Sequence[clingo.Symbol]) -> tuple[DState, ...]:
     steps = sorted([a.number for a in atom.arguments] for atom in symbols if atom.name == "at")
     return tuple((place, slot) for _, place, slot in steps)
+
+
+class Unsettled(Exception):
+    """A call of the solver came to the end of its conflicts."""
 
 
 class Given:
@@ -36,122 +57,242 @@ class Given:
         atoms = self.control.symbolic_atoms.by_signature("waived", 1)
         literals = {str(atom.symbol.arguments[0]): -atom.literal for atom in atoms}
         self.literals = {name: literals[name] for name in sorted(literals, key=rank)}
+        self.waived: set[str] = set()
+        self.name(gather=False)
+
+    def name(self, *, gather: bool) -> None:
+        """Speak from now on of gathered reasons, or of single ones."""
+        self.gather = gather
+        self.of = {name: gathered(name) if gather else (name,) for name in self.literals}
+        self.names = sorted({one for names in self.of.values() for one in names}, key=rank)
         self.conflicts = self.calls = 0
 
-    def core(self, names: Sequence[str]) -> list[str] | None:
-        """None if there is a map with these in force, else some of them with which there is
-        none."""
+    def in_force(self, names: Sequence[str]) -> list[str]:
+        """The single reasons that are in force as long as these are, in their order, on which
+        it depends what clingo blames."""
+        rank_of = {name: number for number, name in enumerate(names)}
+        kept = [name for name, of in self.of.items() if rank_of.keys() >= {*of}]
+        return sorted(kept, key=lambda name: max(rank_of[one] for one in self.of[name]))
+
+    def core(self, names: Sequence[str], limit: int | None = None) -> list[str] | None:
+        """None if there is a map with these in force, of which ``waived`` then has the single
+        reasons that it breaks; else some of them with which there is none. Raises Unsettled
+        where that takes more conflicts than the limit."""
         used: list[int] = []
-        result = self.control.solve(self._assumed(names), on_core=used.extend)
-        if result.satisfiable is None:
-            raise Stopped(INTERRUPT)
+
+        def take(model: clingo.Model) -> None:
+            shown = model.symbols(shown=True)
+            self.waived = {str(one.arguments[0]) for one in shown if one.name == "waived"}
+
+        settings: Any = self.control.configuration.solve
+        settings.solve_limit = f"{'umax' if limit is None else limit},umax"
+        result = self.control.solve(self._assumed(names), on_core=used.extend, on_model=take)
         self.calls += 1
         self.conflicts += int(self.control.statistics["solving"]["solvers"]["conflicts"])
+        if result.satisfiable is None:
+            if limit is None or result.interrupted:
+                raise Stopped(INTERRUPT)
+            raise Unsettled
         if result.satisfiable:
             return None
-        return [name for name in names if self.literals[name] in set(used)]
+        met = set(used)
+        blamed = {one for name, of in self.of.items() if self.literals[name] in met for one in of}
+        return [name for name in names if name in blamed]
+
+    def grown(
+        self, names: Sequence[str], without: str | None = None, most: float = math.inf
+    ) -> list[str]:
+        """Of reasons with which there is a map, that of the last call, these and others that a map
+        allows, too, but for one. Each is tried with few conflicts, and none after so many."""
+        kept, end = list(names), self.conflicts + most
+        for name in self.names:
+            if name in kept or name == without:
+                continue
+            try:
+                if self.waived & {*self.in_force([*kept, name])}:
+                    if self.conflicts > end:
+                        continue
+                    before = self.waived
+                    if self.core([*kept, name], GROWING) is not None:
+                        self.waived = before
+                        continue
+                kept.append(name)
+            except Unsettled:
+                pass
+        return kept
 
     def _assumed(self, names: Sequence[str]) -> list[tuple[clingo.Symbol, bool] | int]:
-        return [*self.assumed, *(self.literals[name] for name in names)]
+        return [*self.assumed, *(self.literals[name] for name in self.in_force(names))]
 
-    def spare(self, names: list[str], kinds: Sequence[str]) -> list[str]:
-        """The reasons but for kinds that can be spared, the last ones first."""
-        for kind in reversed(kinds):
+    def spare(self, names: list[str], demands: bool, limit: int | None = None) -> list[str]:
+        """The reasons but for kinds that can be spared, the last ones first: kinds of what is
+        demanded, or the others; with so many conflicts for each kind, at most."""
+        ranks = {kind_of(name): rank(name)[0] for name in names}
+        for kind in sorted(ranks, key=ranks.__getitem__, reverse=True):
             spared = [name for name in names if kind_of(name) != kind]
-            if len(spared) < len(names) and self.core(spared) is not None:
-                names = spared
+            if demands == (ranks[kind] >= FIRST):
+                with suppress(Unsettled):
+                    names = names if self.core(spared, limit) is None else spared
         return names
 
-    def broken(self, names: Sequence[str], without: str) -> tuple[clingo.Symbol, ...] | None:
-        """What is so in a map with these in force and another one not, and few of all others
-        given up; None if there is no such map."""
-        others = [name for name in self.literals if name not in names and name != without]
+    def broken(self, names: Sequence[str], without: str) -> tuple[clingo.Symbol, ...]:
+        """What is so in a map with these in force, with which there is one, as the last call told,
+        and another one not, and few of all others given up."""
+        if self.gather:
+            return self._model(self.grown(names, without, GROWING))
+        others = [name for name in self.names if name not in names and name != without]
         given_up: list[str] = []
         while (core := self.core([*names, *others])) is not None:
             more = set(core) - set(names)
-            if not more:
-                return None
             given_up += sorted(more, key=rank)
             others = [name for name in others if name not in more]
         for name in given_up[:TIDYING]:
             if self.core([*names, *others, name]) is None:
                 others.append(name)
+        return self._model([*names, *others])
+
+    def _model(self, names: Sequence[str]) -> tuple[clingo.Symbol, ...]:
+        """What is so in a map with these in force."""
         found: list[tuple[clingo.Symbol, ...]] = []
 
         def take(model: clingo.Model) -> None:
             found.append(tuple(model.symbols(atoms=True)))
 
-        self.control.solve(self._assumed([*names, *others]), on_model=take)
+        settings: Any = self.control.configuration.solve
+        settings.solve_limit = "umax,umax"
+        self.control.solve(self._assumed(names), on_model=take)
         if not found:
             raise Stopped(INTERRUPT)
         return found[0]
 
 
 def find_reasons(assumed: Sequence[tuple[clingo.Symbol, bool]], program: Program, put: Put) -> None:
-    """Puts reasons that suffice, fewer and fewer; at last some of which none can be spared."""
+    """Puts single reasons that suffice, fewer and fewer; at last some of which none can be spared.
+    With each it tells that they are not gathered, nor known to be the fewest."""
     given = Given(program, assumed)
-    whole = given.spare(list(given.literals), RULE_NAMES[FIRST:])
+    best = reduced(given, lambda names: put((False, tuple(names), False)))
+    put((False, tuple(best or ()), False))
+
+
+def reduced(
+    given: Given,
+    tell: Callable[[Sequence[str]], bool],
+    most: int | None = None,
+    orders: Sequence[int] = range(REASON_ORDERS),
+    limit: int | None = None,
+    names: Sequence[str] | None = None,
+) -> list[str] | None:
+    """Reasons none of which can be spared, tried in several orders: those of the order that leaves
+    the fewest, and of as many those that have the fewest gathered ones of one step.
+
+    Parameters:
+        given: what they are of; with all of them there is no map.
+        tell: is told the reasons of the first order that suffice, and whether to go on.
+        most: how many reasons are wanted at most; an order is left as soon as it is known to
+            need more.
+        orders: the numbers of the orders that are tried.
+        limit: of the conflicts with which a reason is tried; where they are not enough, it is left
+            to ``verify`` whether it can be spared.
+        names: of which they are; without it all.
+
+    Returns:
+        The reasons; None if each of the orders needs more than are wanted.
+    """
+    names = given.names if names is None else names
+    whole = given.spare(list(names), demands=True, limit=limit)
     best: list[str] | None = None
-    for number in range(REASON_ORDERS):
-        # The fewest kinds are not always the fewest reasons: later orders have all kinds.
-        kept = whole if number else given.spare(whole, RULE_NAMES[:FIRST])
+    for number in orders:
+        # The fewest kinds are not always the fewest reasons: other orders have all kinds.
+        kept = whole if number else given.spare(whole, demands=False, limit=limit)
         least = given.core(in_order(kept, number))
         if least is None:
             raise RuntimeError("the maps differ between two encodings")
-        for size in sorted({max(1, len(least) // 8), 1}, reverse=True):  # first many at a time
+        needed = 0  # at least so many
+        # First many at a time. If those that are tried together cannot be spared, one is needed.
+        for size in sorted({max(1, len(least) // (2 * most if most else 8)), 1}, reverse=True):
             tried = in_order(least, number)[::-1]
+            needed = 0
             for start in range(0, len(tried), size):
-                if best is None and not put(tuple(sorted(least, key=rank))):
-                    return
+                if best is None and not tell(sorted(least, key=rank)):
+                    raise Stopped(INTERRUPT)
                 spared = set(tried[start : start + size]) & set(least)
-                core = (
-                    given.core([name for name in least if name not in spared]) if spared else None
-                )
+                if not spared:
+                    continue
+                try:
+                    core = given.core([name for name in least if name not in spared], limit)
+                except Unsettled:
+                    continue
                 least = least if core is None else core
-        if best is None or len(least) < len(best):
+                needed += core is None
+                if most is not None and needed > most:
+                    break
+            if most is not None and needed > most:
+                break
+        enough = most is None or len(least) <= most
+        if enough and (best is None or _burden(least) < _burden(best)):
             best = sorted(least, key=rank)
-        if len(best) <= 1 or given.conflicts > CONFLICTS or given.calls > CALLS:
+        spent = given.conflicts > CONFLICTS or given.calls > CALLS
+        if spent or (best is not None and len(best) <= 1):
             break
-    put(tuple(best or ()))
+    return best
+
+
+def _burden(names: Sequence[str]) -> tuple[int, int]:
+    """How many reasons there are to read; and how many of them are gathered ones of one step."""
+    return len(names), sum(of_one_step(name) for name in names)
 
 
 def verify(
     assumed: Sequence[tuple[clingo.Symbol, bool]],
+    gather: bool,
     names: Sequence[str],
     program: Program,
     put: Put,
 ) -> None:
-    """Puts each reason with what is so in a map that breaks it, and no other one of them."""
+    """Puts, reason by reason, all that are left of them, and of one that cannot be spared a map
+    that breaks it, and no other one of them: its dstates, what else it breaks, the single reasons
+    that are broken of this one, and all that is so in the map. What can be spared is left out."""
     given = Given(program, assumed)
+    given.name(gather=gather)
     if given.core(names) is None:
         raise RuntimeError("the reasons do not suffice")
-    for name in names:
-        symbols = given.broken([other for other in names if other != name], name)
-        if symbols is None:
-            raise RuntimeError(f"{name} is no reason")
-        broken = {str(atom.arguments[0]) for atom in symbols if atom.name == "waived"}
-        also = tuple(sorted(broken - {name}, key=rank))
-        if name not in broken or set(also) & set(names):
+    left = list(names)
+    for name in in_order(names, 0)[::-1]:
+        rest = [other for other in left if other != name]
+        if name not in left:
+            continue
+        if (core := given.core(rest)) is not None:
+            left = core
+            continue
+        symbols = given.broken(rest, name)
+        waived = {str(atom.arguments[0]) for atom in symbols if atom.name == "waived"}
+        breaks = sorted((one for one in waived if name in given.of[one]), key=rank)
+        others = {other for one in waived - {*breaks} for other in given.of[one]} - {*rest}
+        if not breaks or waived & {*given.in_force(rest)}:
             raise RuntimeError(f"{name} is not what it is about")
-        if not put((name, dstates(symbols), also, symbols)):
+        also = tuple(sorted(others, key=rank))
+        if not put((tuple(left), name, dstates(symbols), also, tuple(breaks), symbols)):
             return
-
-
-def kind_of(name: str) -> str:
-    return name.partition("(")[0]
-
-
-def numbers_of(name: str) -> tuple[int, ...]:
-    return tuple(map(int, re.findall(r"\d+", name)))
+    put((tuple(left),))
 
 
 def rank(name: str) -> tuple[int, tuple[int, ...]]:
     """Reasons by kind, and then by their steps."""
-    return RULE_NAMES.index(kind_of(name)), numbers_of(name)
+    kind = kind_of(name)  # or the words of a whole rule
+    first = RULE_NAMES.index(kind) if kind in RULES else [*RULES.values()].index(kind)
+    return first, numbers_of(name)
+
+
+def _span(name: str) -> int:
+    """How far apart the steps of a reason are."""
+    numbers = numbers_of(name)
+    return max(numbers) - min(numbers) if numbers else 0
 
 
 def in_order(names: Sequence[str], number: int) -> list[str]:
     """The reasons in one of several orders: those that come last are spared first."""
+    if number == NEAR:
+        return sorted(names, key=lambda name: (_span(name), rank(name)))
     if number <= 1:
         return sorted(names, key=lambda name: (max(numbers_of(name), default=0), rank(name)))
     if number == 2:

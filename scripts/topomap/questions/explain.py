@@ -3,7 +3,9 @@
 ``encodings/explain.lp`` makes each thing that a rule forbids a reason that may be given up. Of
 the shortest beginning of the experience in which it is so already, those reasons are sought
 without any one of which it would not be so: whole kinds of rules are spared first, then one
-reason after the other, in several orders, of which the smallest answer is kept. Where no map is
+reason after the other, in several orders, of which the smallest answer is kept. Where there is no
+map at all, and more than a few of them would be needed, they are gathered (``cores``): each is a
+whole rule, or all that was seen after one step. Where no map is
 closed, and a default stands in the way (``defaults.in_the_way``), that is said, and no reasons.
 """
 
@@ -21,14 +23,19 @@ from topomap.model.experience import DState, Experience
 from topomap.model.found import Found, steps_json
 from topomap.model.query import Query
 from topomap.model.vocabulary import DEMANDS, RELAXING
-from topomap.questions.cores import dstates, find_reasons, kind_of, numbers_of, verify
+from topomap.questions.cores import dstates, find_reasons, verify
+from topomap.questions.few import find_few
 from topomap.questions.reasons import (
     KNOWN,
     RULES,
     Broken,
     Told,
+    is_gathered,
+    kind_of,
+    numbers_of,
     told_assumed,
     told_gateway,
+    told_gathered,
     told_known,
     told_marker,
     told_plainly,
@@ -56,21 +63,30 @@ Goal = bool | None  # whether the statement is to hold; None if there is none
 @dataclass(frozen=True)
 class Reason:
     """A reason, in words; ``at`` is a map that breaks it, and no other one of the answer, and
-    ``also`` what that map breaks besides."""
+    ``also`` what that map breaks besides. If it is gathered of single ones, ``breaks`` are those
+    that are broken in that map, and ``then`` the first of them in words."""
 
     name: str
     told: Told
     at: tuple[DState, ...] = ()
     also: tuple[str, ...] = ()
+    breaks: tuple[str, ...] = ()
+    then: Told | None = None
 
     @property
     def kind(self) -> str:
-        """The rule that it is of."""
-        return self.name.partition("(")[0]
+        """Its name, without the steps."""
+        return kind_of(self.name)
+
+    @property
+    def rule(self) -> str:
+        """The rule that it is of, in words."""
+        return RULES.get(self.kind, self.kind)
 
     def lines(self) -> Iterator[str]:
         """The reason to read, and a map without it."""
-        yield f"  {self.name}: {RULES[self.kind]}: {self.told.words}"
+        name = "" if self.name == self.rule else f"{self.name}: "
+        yield f"  {name}{self.rule}: {self.told.words}"
         if self.at:
             line = " ".join(f"{place}.{slot}" for place, slot in self.at)
             others = " ".join(self.also[:MOST_OTHERS])
@@ -78,30 +94,39 @@ class Reason:
             others += f" and {more} more" if more > 0 else ""
             also = f" (which breaks {others}, too)" if others else ""
             yield f"    without it: {line}{also}"
+        if self.then:
+            more = len(self.breaks) - 1
+            yield f"    {self.then.words}" + f", and {more} more of this kind" * bool(more)
 
     def document(self) -> dict[str, Any]:
         """The reason as JSON."""
         return {
             "reason": self.name,
-            "rule": RULES[self.kind],
+            "rule": self.rule,
             "words": self.told.words,
             "steps": self.told.steps,
             "walk": self.told.walk,
             "places": self.told.places,
             "without": steps_json(self.at),
             "also": self.also,
+            "breaks": self.breaks,
+            "then": self.then and self.then.words,
         }
 
 
 @dataclass
 class Explanation:
     """What is found: the verdict, and the reasons for it in the first ``horizon`` steps, or what is
-    ``in_the_way`` of a closed map; or maps in which the statement holds and does not."""
+    ``in_the_way`` of a closed map; or maps in which the statement holds and does not.
+    ``gathered``: whether reasons are whole rules, or what is told of one step; ``fewest``: whether
+    it is proved that no fewer of these suffice."""
 
     verdict: str | None = None
     horizon: int | None = None
     reasons: list[Reason] = field(default_factory=list)
     minimal: bool = False
+    gathered: bool = False
+    fewest: bool = False
     in_the_way: list[str] = field(default_factory=list)
     maps: dict[bool, tuple[DState, ...]] = field(default_factory=dict)
 
@@ -145,10 +170,12 @@ class Explanation:
             return "it is so whatever the map: no rule is needed"
         if many == 1:
             return "this one reason is enough"
-        kinds = Counter(RULES[reason.kind] for reason in self.reasons)
+        kinds = Counter(reason.rule for reason in self.reasons)
         told = ", ".join(f"{times} of {kind}" for kind, times in kinds.most_common())
-        which = f" ({told})" if many > MANY else ""
-        return f"these {many} reasons{which} are enough, and without any one of them it is not so"
+        which = f" ({told})" if many > MANY and not self.gathered else ""
+        fewest = "; fewer of this sort would not be enough" * self.fewest
+        enough = f"these {many} reasons{which} are enough, and without any one of them it is not so"
+        return enough + fewest
 
     def document(self, statement: Statement | None, query: Query) -> dict[str, Any]:
         """What was found, as JSON."""
@@ -165,6 +192,8 @@ class Explanation:
             "horizon": self.horizon,
             "reasons": [reason.document() for reason in self.reasons],
             "minimal": self.minimal or None,
+            "gathered": self.gathered,
+            "fewest": self.fewest or None,
             "in_the_way": self.in_the_way,
             "witness": steps_json(maps.get(True, ())),
             "counter": steps_json(maps.get(False, ())),
@@ -281,20 +310,41 @@ class Explainer:
         self.watch.title(f"reasons in {steps} steps")
         assumed = self._assumed(goal)
         names: tuple[str, ...] = ()
-        work: Callable[[Program, Put], None] = partial(find_reasons, assumed)
-        for names in calls(experience, query, facts, self.watch, work):
-            self.found.reasons = [Reason(name, _plainly(experience, name)) for name in names]
+        work: Callable[[Program, Put], None]
+        work = find_few if goal is None else partial(find_reasons, assumed)
+        for told in calls(experience, query, facts, self.watch, work):
+            if told:
+                self.found.gathered, names, self.found.fewest = told
+                self.found.reasons = [self._reason(experience, name) for name in names]
         forget()  # what the solver has learnt: the answer is verified anew
         self.watch.phase("verified")
-        told = []
-        work = partial(verify, assumed, names)
-        for name, at, also, symbols in calls(experience, query, facts, self.watch, work):
-            told.append(Reason(name, _told(experience, name, at, symbols), at, also))
-            self.found.reasons[len(told) - 1] = told[-1]
+        reasons = {reason.name: reason for reason in self.found.reasons}
+        work = partial(verify, assumed, self.found.gathered, names)
+        for left, *told in calls(experience, query, facts, self.watch, work):
+            if told:
+                reasons[told[0]] = self._reason(experience, *told)
+            self.found.reasons = [reasons[name] for name in names if name in left]
         forget()
-        if len(told) != len(names):
+        if not all(reason.at for reason in self.found.reasons):
             raise RuntimeError("the reasons were not verified")
         self.found.minimal = True
+
+    def _reason(
+        self,
+        experience: Experience,
+        name: str,
+        at: tuple[DState, ...] = (),
+        also: tuple[str, ...] = (),
+        breaks: tuple[str, ...] = (),
+        symbols: Sequence[clingo.Symbol] = (),
+    ) -> Reason:
+        """A reason in words; and if a map that breaks it is given, what it is like there."""
+        if not self.found.gathered or not is_gathered(name):
+            told = _told(experience, name, at, symbols) if at else _plainly(experience, name)
+            return Reason(name, told, at, also)
+        then = _told(experience, breaks[0], at, symbols) if breaks else None
+        told = told_gathered(experience, name, self.query.places)
+        return Reason(name, told, at, also, breaks, then)
 
 
 def _one(

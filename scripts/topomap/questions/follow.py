@@ -2,21 +2,25 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
-from topomap.documents.answers import map_line
+from topomap.documents.answers import line_of
 from topomap.model import words
-from topomap.model.exceptions import exceptions_of
 from topomap.model.experience import Experience, Step
-from topomap.model.found import Found, steps_json
+from topomap.model.found import UNPROVED, steps_json
+from topomap.model.growing import Growing
 from topomap.questions.explore import LIMITS, Plan, plan
 from topomap.questions.records import Record
-from topomap.questions.standings import standing
-from topomap.runtime.limits import MOST_COUNTED
+from topomap.questions.standings import Standing, predict, standing, standing_of
+from topomap.runtime.limits import LONGEST_WALK, MOST_COUNTED
 from topomap.runtime.watch import Watch
-from topomap.solver.online import Certain, OnlineSolver, Status
+from topomap.search.certainty import Certain
+from topomap.search.living import Living, Told, experience_of
+from topomap.solver.online import LivingMap, OnlineSolver, ReadMap, Status
 
 SHOWN = 3  # best maps that are told in text
+WAY = 201  # dstates of the way in a map that are told, the last ones: of a log of 200 steps all
 
 
 @dataclass(frozen=True)
@@ -25,12 +29,22 @@ class StepAnswer:
     since the step before, ``new``; the ``plan`` of what to do next, if one was found; and why
     something is missing."""
 
-    experience: Experience
+    record: Record
+    done: Growing[Step]
     status: Status
     certain: Certain
     new: Certain
     plan: Plan | None
     fault: str | None
+
+    @cached_property
+    def experience(self) -> Experience:
+        """The experience up to this step; it takes as long as the log is."""
+        record = self.record
+        assert record.slots is not None
+        return experience_of(
+            record.slots, self.done, record.drift, record.stretch, record.tolerance
+        )
 
     def lines(self, seconds: float) -> Iterator[str]:
         """The same to read; it took so many seconds."""
@@ -43,25 +57,32 @@ class StepAnswer:
         noun = words.number(status.hypotheses or 0, "hypothesis", "hypotheses")
         told = f"{more}{noun}" if status.hypotheses is not None else "hypotheses not counted"
         yield f"step {status.step}: {told} ({seconds:.2f} s)"
-        facts = [f"same({t},{u})" for t, u in sorted(self.new.same)]
+        pairs, number = self.new.pairs(words.MOST)
+        facts = [f"same({t},{u})" for t, u in pairs]
         facts += [f"new({t})" for t in sorted(self.new.new)]
         facts += [f"linked({t},{s},{u},{r})" for t, s, u, r in sorted(self.new.linked)]
         if facts:
-            rest = f" and {len(facts) - words.MOST:,} more" if len(facts) > words.MOST else ""
+            left = number - len(pairs) + len(facts) - words.MOST
+            rest = f" and {left:,} more" if left > 0 else ""
             yield f"  certain now: {' '.join(facts[: words.MOST])}{rest}"
-        for number, at in enumerate(status.best[:SHOWN], 1):
-            yield f"  map {number}: {map_line(self.experience, Found(at, ''))}"
-            for one in exceptions_of(self.experience, at):
-                yield f"    {one.words}"
-        if status.kind:
-            count = words.number(len(status.best), f"{status.kind} map")
+        for which, one in enumerate(status.maps[:SHOWN], 1):
+            way = " ".join([f"{place}.{slot}" for place, slot in one.way(WAY)])
+            earlier = "... " * (status.step >= WAY)
+            yield f"  map {which}: {line_of(one.sizes, earlier + way)}"
+            for exception in one.exceptions:
+                yield f"    {exception.words}"
+        if status.kind == UNPROVED:
+            count = words.number(len(status.maps), "map")
+            yield f"  {count}, {UNPROVED}, cost {' '.join(map(str, status.cost))}"
+        elif status.kind:
+            count = words.number(len(status.maps), f"{status.kind} map")
             many = "" if status.all_best else "more than "
             yield f"  {many}{count}, cost {' '.join(map(str, status.cost))}"
         if self.plan is not None:
-            yield f"  next: {_next(self.plan, self.experience, status.all_best)}"
-        elif status.best and self.experience.tolerance:
+            yield f"  next: {_next(self.plan, self.record, status)}"
+        elif status.maps and self.record.tolerance:
             yield "  next: left out, as bearings are not exact, and what maps predict is"
-        elif status.best and not self.fault:
+        elif status.maps and not self.fault:
             yield "  next: a walk that tells the best maps apart is not found"
         if self.fault:
             yield f"  partial: {self.fault}"
@@ -69,7 +90,8 @@ class StepAnswer:
     def document(self) -> dict[str, Any]:
         """The same as JSON; None where it is open."""
         status, made, new = self.status, self.plan, self.new
-        settled = status.all_best or bool(status.best)
+        settled = status.all_best or bool(status.maps)
+        first = max(0, status.step + 1 - WAY)
         return {
             "step": status.step,
             "hypotheses": status.hypotheses,
@@ -78,12 +100,11 @@ class StepAnswer:
             "best": {
                 "kind": status.kind,
                 "cost": list(status.cost) if settled else None,
-                "count": len(status.best) if settled else None,
+                "count": len(status.maps) if settled else None,
                 "all": status.all_best if settled else None,
-                "maps": [steps_json(at) for at in status.best],
+                "maps": [steps_json(one.way(WAY), first) for one in status.maps],
                 "exceptions": [
-                    [one.document() for one in exceptions_of(self.experience, at)]
-                    for at in status.best
+                    [exception.document() for exception in one.exceptions] for one in status.maps
                 ],
             },
             "certain": {
@@ -117,10 +138,12 @@ class Following:
         marker: bool = False,
         most: int = MOST_COUNTED,
         path_axiom: bool = True,
+        living: int | None = None,
     ):
         self.planar, self.bound, self.marker, self.most = planar, bound, marker, most
         self.path_axiom = path_axiom
         self.record = Record(one_log=planar)
+        self._living = () if living is None else (living,)
         self.solver: OnlineSolver | None = None
         self._certain: list[Certain] = []  # by steps
 
@@ -128,9 +151,7 @@ class Following:
         """Go to what a record says; the steps at which it stands on the way."""
         old, new = self.record.whole(), record.whole()
         self.record = record
-        common = 0
-        while common < min(len(old), len(new)) and old[common] == new[common]:
-            common += 1
+        common = old.common(new)
         if common < len(old):
             del self._certain[common:]
             if common:
@@ -150,7 +171,8 @@ class Following:
             assert record.slots is not None
             limits = self.planar, self.bound, self.most
             measured = record.drift, record.stretch, record.tolerance
-            self.solver = OnlineSolver(record.slots, step, *limits, *measured, self.path_axiom)
+            options = *limits, *measured, self.path_axiom
+            self.solver = OnlineSolver(record.slots, step, *options, *self._living)
         else:
             self.solver.step(step)
 
@@ -158,35 +180,86 @@ class Following:
         """What is known where it stands, after one step at least; at the time limit, what is known
         until then."""
         assert self.solver is not None
-        experience = self.solver.experience
-        del self._certain[experience.steps :]
+        step, record = self.solver.told.last, self.record
+        del self._certain[step:]
         status = self.solver.status(watch)
         before = self._certain[-1] if self._certain else Certain()
         following, fault = None, status.fault
         # What maps predict is exact, and so tells nothing where bearings are not.
-        if status.best and not fault and not experience.tolerance:
-            following, fault = self._plan(experience, status, watch)
+        if status.maps and not fault and not record.tolerance:
+            following, fault = self._plan(self.solver, status, watch)
         certain = before if status.certain is None else status.certain
-        self._certain += [before] * (status.step - len(self._certain))
+        self._certain += [before] * (step - len(self._certain))
         self._certain.append(certain)
-        return StepAnswer(experience, status, certain, certain.since(before), following, fault)
+        done, new = record.whole().first(step + 1), certain.since(before)
+        return StepAnswer(record, done, status, certain, new, following, fault)
 
     def _plan(
-        self, experience: Experience, status: Status, watch: Watch
+        self, solver: OnlineSolver, status: Status, watch: Watch
     ) -> tuple[Plan | None, str | None]:
         """The next best action: what explore says of the best maps; and why the planning was cut,
         if it was. None if no walk was found, and it is open whether there is one."""
-        among = [standing(experience, at) for at in status.best]
-        made = plan(experience.slots, among, watch, marker=self.marker)
+        told, one = solver.told, status.maps[0]
+        if len(status.maps) == 1 and isinstance(one, LivingMap):
+            return _plan_for(told, one.living), None
+        among = [_standing(solver, one) for one in status.maps]
+        made = plan(told.slots, among, watch, marker=self.marker)
         fault = None if made.fault in LIMITS else made.fault
         if not made.turns and made.kind not in ("settled", "bisimilar"):
             return None, fault
         return made, fault
 
 
-def _next(made: Plan, experience: Experience, every: bool) -> str:
-    told = [words.direction(turn, experience.slots) for turn in made.turns]
-    if experience.steps == 0 and told:  # it arrived by no gateway, so there is no way back
+def _standing(solver: OnlineSolver, one: ReadMap | LivingMap) -> Standing:
+    if isinstance(one, LivingMap):
+        return standing_of(solver.told, one.living)
+    return standing(solver.experience, one.at)
+
+
+def _plan_for(told: Told, living: Living) -> Plan | None:
+    """What explore says of one map: the shortest walk to a pending gateway, and of such walks the
+    one of the least turns. None if it is too long."""
+    links, slots = living.form.links, told.slots
+    reached: dict[int, tuple[int, int]] = {}  # from which gateway each was, by which turn
+    start = living.visit.gateway
+    level, seen, out = [start], {start}, None
+    for _ in range(LONGEST_WALK):
+        following = []
+        for gateway in level:
+            place, slot = divmod(gateway, slots)
+            ways = sorted((other - gateway) % slots for other in told.star(place).face)
+            for turn in ways:
+                way = place * slots + (slot + turn) % slots
+                end = links.get(way)
+                if end is None:
+                    out = gateway, turn
+                    break
+                if end not in seen:
+                    seen.add(end)
+                    reached[end] = gateway, turn
+                    following.append(end)
+            if out is not None:
+                break
+        if out is not None or not following:
+            break
+        level = following
+    else:
+        return None
+    turns: list[int] = []
+    while out is not None:
+        gateway, turn = out
+        turns.append(turn)
+        out = reached.get(gateway)
+    turns.reverse()
+    predicted = predict(standing_of(told, living), turns)
+    kind = "pending" if turns else "settled"
+    return Plan(kind, tuple(turns), None, 1, True, None, (predicted,), ((0,),), ())
+
+
+def _next(made: Plan, record: Record, status: Status) -> str:
+    assert record.slots is not None
+    told, every = [words.direction(turn, record.slots) for turn in made.turns], status.all_best
+    if status.step == 0 and told:  # it arrived by no gateway, so there is no way back
         told[0] = "by the gateway stood at" if made.turns[0] == 0 else ""
     walk = ", ".join(
         " ".join(filter(None, [str(turn), f"({'; '.join(how)})" * bool(how)]))

@@ -4,6 +4,7 @@ The map need not be sound in other ways; a gateway of it may have two links. So 
 by the visits, as the rules in ``encodings/theory/`` do, and not by the links.
 """
 
+import re
 from collections import deque
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -46,6 +47,20 @@ RULES = {
 RULE_NAMES = tuple(RULES)  # those named first are what an explanation prefers to be made of
 KNOWN = ("compass", "odometry", "length", "same", "apart")  # what is known besides views
 FIRST = RULE_NAMES.index("bound")  # so many are of every map, and not of demands
+# What a whole rule says, by its words in RULES.
+WHOLE = {
+    "odometry": "visits that are too far apart by their odometry are of two places",
+    "gateway unification": "who leaves by the gateway where a step arrived goes back on its link",
+    "schema": "a gateway has one link, and none with itself",
+    "path axiom": "no place is on a path twice, and no path is circular",
+    "bound": "there are not too many places",
+    "planarity": "the map can be drawn without crossings",
+    "boundary": "paths meet once at most, hold no place twice, and have each place on one side",
+    "perpendicularity": "paths meet once at most, and no three of them make a triangle",
+    "travelled": "each path holds two places or more",
+    "closed": "each gateway has a link",
+}
+BY_STEP = ("view", "compass", "length")  # what is told of each of two steps, and compared
 Node = tuple[int, int]  # a run, and a visit on it
 
 
@@ -317,6 +332,52 @@ class Broken:
         return Told(words, tuple(walk), tuple(walk), tuple(places))
 
 
+def kind_of(name: str) -> str:
+    """The kind of a reason: its name without its steps."""
+    return name.partition("(")[0]
+
+
+def numbers_of(name: str) -> tuple[int, ...]:
+    """The numbers in the name of a reason, which mostly are steps."""
+    return tuple(map(int, re.findall(r"\d+", name)))
+
+
+def gathered(name: str) -> tuple[str, ...]:
+    """The gathered reasons of which a single one is a part; it is given up without any of them.
+    They are what is told of a step, or a whole rule; or itself, if it is about one thing told."""
+    kind = kind_of(name)
+    if kind in BY_STEP:
+        return tuple(f"{kind}({step})" for step in numbers_of(name))
+    return (RULES[kind],) if RULES[kind] in WHOLE else (name,)
+
+
+def is_gathered(name: str) -> bool:
+    """Whether an answer of gathered reasons has gathered this one, and not left it as it is."""
+    return name in WHOLE or of_one_step(name)
+
+
+def of_one_step(name: str) -> bool:
+    """Whether it is a gathered reason of what is told of one step."""
+    return kind_of(name) in BY_STEP and len(numbers_of(name)) == 1
+
+
+def told_gathered(experience: Experience, name: str, bound: int | None) -> Told:
+    """A gathered reason in words."""
+    kind, steps = kind_of(name), numbers_of(name)
+    if name == "bound":
+        return Told(f"there are at most {number(bound or 0, 'place')}", ())
+    if name in WHOLE:
+        return Told(WHOLE[name], ())
+    if kind == "view":
+        words = f"after step {steps[0]} the agent sees the gateways {_seen(experience, steps[0])}"
+    elif kind == "compass":
+        slot = experience.compass[steps[0]]
+        words = f"the gateway stood at points to compass slot {slot} after step {steps[0]}"
+    else:
+        words = f"step {steps[0]} is {experience.lengths[steps[0] - 1]} long"
+    return Told(words, steps)
+
+
 def told_plainly(kind: str, arguments: Sequence[int]) -> Told:
     """A reason in words, without a map that breaks it."""
     steps = _named("step", arguments)
@@ -372,16 +433,21 @@ def told_views(
             f"the first one, turned by {turn} as it would be, does not give the other "
             f"(it does turned by {' or '.join(map(str, turns))})"
         )
-    texts = [
-        " ".join(map(str, sorted(experience.views[one])))
-        + (f", with {', '.join(map(printable, sorted(sign))) or 'no landmark'}" * any(signs))
-        for one, sign in zip((step, visit), signs, strict=True)
-    ]
+    texts = [_seen(experience, one, any(signs)) for one in (step, visit)]
     words = (
         f"after step {step} the agent sees the gateways {texts[0]}, after step {visit} {texts[1]}: "
         f"{fault}"
     )
     return Told(words, (step, visit))
+
+
+def _seen(experience: Experience, step: int, signs: bool = False) -> str:
+    """The gateways seen after a step, and the landmarks, if there are some or it matters."""
+    names = sorted(experience.landmarks[step])
+    text = " ".join(map(str, sorted(experience.views[step])))
+    if not signs and not names:
+        return text
+    return text + f", with {', '.join(map(printable, names)) or 'no landmark'}"
 
 
 def told_known(

@@ -6,7 +6,7 @@ known, so that a line with a fault changes nothing.
 
 import json
 import re
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import clingo
@@ -23,6 +23,7 @@ from topomap.model.facts import (
     range_fault,
     slots_fault,
 )
+from topomap.model.growing import Growing
 from topomap.model.terms import cut_short, spelt
 from topomap.runtime.errors import InputError
 from topomap.runtime.limits import DRIFT, STRETCH
@@ -36,6 +37,7 @@ KNOWN_KEYS = {  # of a step in JSON, with what each wants
     "apart": "a list of steps",
     "straight": "a list of pairs of slots",
 }
+State = tuple[frozenset[str | None], int]
 _UNDO = re.compile(r"undo(?:\(\s*([0-9]{1,9})\s*\))?\s*\.\s*(?:%.*)?", re.ASCII | re.DOTALL)
 
 
@@ -45,20 +47,28 @@ class LineFault(ValueError):
 
 @dataclass(frozen=True)
 class Record:
-    """What was read. Of the last step something may be missing."""
+    """What was read. Of the last step something may be missing; those before it are ``done``."""
 
     slots: int | None = None
-    steps: tuple[Step, ...] = ()
+    done: Growing[Step] = field(default_factory=Growing)
+    last: Step | None = None
     drift: int = DRIFT
     stretch: int = STRETCH
     tolerance: int = 0
     one_log: bool = False  # whether no new log may begin
+    # After each step that is done: the markers that lie somewhere, and how far the shifts come.
+    _states: Growing[State] = field(default_factory=Growing, compare=False, repr=False)
+
+    @property
+    def steps(self) -> Growing[Step]:
+        """The steps, of the last of which something may be missing."""
+        return self.done if self.last is None else self.done.then(self.last)
 
     def lack(self) -> str | None:
         """What the last step lacks."""
-        if not self.steps:
+        if self.last is None:
             return None
-        last, step = self.steps[-1], len(self.steps) - 1
+        last, step = self.last, len(self.done)
         if self.slots is None:
             return "no slots(K)"
         if step and last.turn is None and not (last.start or last.look):
@@ -73,9 +83,9 @@ class Record:
                 return f"step {step}: straight({step},{one},{other}): no gateway in slot {slot}"
         return None
 
-    def whole(self) -> tuple[Step, ...]:
+    def whole(self) -> Growing[Step]:
         """The steps of which all is known."""
-        return self.steps[:-1] if self.lack() else self.steps
+        return self.done if self.lack() else self.steps
 
     def with_line(self, line: str, source: str, number: int) -> "Record":
         """The record with one more line. Raises InputError if the line has a fault."""
@@ -90,7 +100,8 @@ class Record:
                 if isinstance(fact, str):
                     raise LineFault(fact)
                 record = record._with(fact)
-            return record._marked()._measured()
+            record._state()
+            return record
         except LineFault as fault:
             raise InputError(f"{source}:{number}: {fault}") from None
 
@@ -124,18 +135,32 @@ class Record:
             return self._on_one_path(first, *numbers)
         return self._seen(first, landmark=str(arguments[1]))
 
-    def _marked(self) -> "Record":
-        """The record, if what is told of the marker can be."""
-        out: dict[str | None, bool] = {}
-        for number, step in enumerate(self.steps):
-            marks: dict[str | None, set[str]] = {None: {*step.marks}} if step.marks else {}
-            for kind, name in step.things:
-                marks.setdefault(name, set()).add(kind)
-            for which, done in marks.items():
-                if fault := marker_fault(done, out.get(which, False), which):
-                    raise LineFault(f"step {number}: {fault}")
-                out[which] = marker_out(done, out.get(which, False))
-        return self
+    def _state(self) -> State:
+        """What is so after the last step. Raises LineFault, if what is told of markers cannot be,
+        or clingo's numbers do not hold what comes of shifts and lengths."""
+        out, far = self._states[-1] if self.done else (frozenset(), 0)
+        last, number = self.last, len(self.done)
+        if last is None:
+            return out, far
+        marks: dict[str | None, set[str]] = {None: {*last.marks}} if last.marks else {}
+        for kind, name in last.things:
+            marks.setdefault(name, set()).add(kind)
+        for which, done in marks.items():
+            if fault := marker_fault(done, which in out, which):
+                raise LineFault(f"step {number}: {fault}")
+            out = out - {which} | ({which} if marker_out(done, which in out) else set())
+        if last.shift or last.length:
+            told = [(far, 0), last.shift]
+            wrong = range_fault(told, [last.length], self.drift, self.stretch)
+            if wrong:
+                raise LineFault(replace(wrong, step=number).of("").lstrip(": "))
+        x, y = last.shift or (0, 0)
+        return out, far + abs(x) + abs(y)
+
+    def _with_last(self, **changed: Any) -> "Record":
+        """The record, where this is known of the last step."""
+        assert self.last is not None
+        return replace(self, last=replace(self.last, **changed))
 
     def with_slots(self, slots: int) -> "Record":
         """The record with the number of slots. Raises LineFault."""
@@ -143,21 +168,21 @@ class Record:
             raise LineFault("slots are told twice")
         if fault := slots_fault(slots):
             raise LineFault(fault)
-        if self.steps:
+        if self.last is not None:
             raise LineFault("slots are to be told before the first step")
         return replace(self, slots=slots)
 
     def _with_thing(self, step: int, kind: str, name: str) -> "Record":
         """The record with what is done with a marker that has a name."""
         record = self._seen(step)
-        known = record.steps[step]
-        changed = replace(known, things=known.things | {(kind, name)})
-        return replace(record, steps=(*record.steps[:step], changed))
+        assert record.last is not None
+        return record._with_last(things=record.last.things | {(kind, name)})
 
     def _rested(self, step: int, kind: str) -> "Record":
         """The record with a step that is no travel."""
         record = self._seen(step)
-        known = record.steps[step]
+        assert record.last is not None
+        known = record.last
         if step == 0:
             said = "it is the start already" if kind == "start" else "there is no earlier look"
             raise LineFault(f"step 0: {said}")
@@ -170,14 +195,14 @@ class Record:
             raise LineFault(f"step {step}: there is a length, but it is no travel")
         if (kind == "start" and known.look) or (kind == "look" and known.start):
             raise LineFault(f"step {step}: it begins a log, and is a second look")
-        changed: dict[str, Any] = {kind: True}
-        return replace(record, steps=(*record.steps[:step], replace(known, **changed)))
+        return record._with_last(**{kind: True})
 
     def _known(self, step: int, name: str, value: Any) -> "Record":
         """The record with what is known besides views of the last step, or of the next one."""
         record = self._seen(step)
         assert record.slots is not None
-        known = record.steps[step]
+        assert record.last is not None
+        known = record.last
         if getattr(known, name) not in (None, value):
             raise LineFault(f"step {step}: more than one {name}")
         if name == "compass" and not 0 <= value < record.slots:
@@ -188,8 +213,7 @@ class Record:
             raise LineFault(f"step {step}: there is a length, but it is no travel")
         if name == "length" and value <= 0:
             raise LineFault(f"step {step}: length {value} is not above 0")
-        changed: dict[str, Any] = {name: value}
-        return replace(record, steps=(*record.steps[:step], replace(known, **changed)))
+        return record._with_last(**{name: value})
 
     def _paired(self, name: str, one: int, other: int) -> "Record":
         """The record with two steps after which the agent was at one place, or at two."""
@@ -199,19 +223,18 @@ class Record:
         record = self._seen(step)
         if earlier == step and name == "apart":
             raise LineFault(f"step {step}: it is told to be of another place than itself")
-        known = record.steps[step]
-        changed: dict[str, Any] = {name: getattr(known, name) | {earlier}}
-        return replace(record, steps=(*record.steps[:step], replace(known, **changed)))
+        return record._with_last(**{name: getattr(record.last, name) | {earlier}})
 
     def _on_one_path(self, step: int, one: int, other: int) -> "Record":
         """The record with two gateways of a visit that are on one path, or with one that ends its
         path, which is told as a pair with itself."""
         record = self._seen(step)
         assert record.slots is not None
-        if step and record.steps[0].straight is None:
+        if record.done and record.done[0].straight is None:
             said = "which gateways are on one path is told from step 0 on, or not at all"
             raise LineFault(f"step {step}: {said}")
-        known = record.steps[step]
+        assert record.last is not None
+        known = record.last
         pairs = known.straight or frozenset()
         for slot in (one, other):
             if not 0 <= slot < record.slots:
@@ -220,16 +243,7 @@ class Record:
                 raise LineFault(f"step {step}: gateway {slot} is in more than one pair")
         if one != other:
             pairs |= {(min(one, other), max(one, other))}
-        return replace(record, steps=(*record.steps[:step], replace(known, straight=pairs)))
-
-    def _measured(self) -> "Record":
-        """The record, if clingo's numbers hold what comes of its shifts and lengths."""
-        if any(step.shift or step.length for step in self.steps[-1:]):
-            told = self.steps[1:]
-            shifts, lengths = [step.shift for step in told], [step.length for step in told]
-            if fault := range_fault(shifts, lengths, self.drift, self.stretch):
-                raise LineFault(fault.of("").lstrip(": "))
-        return self
+        return record._with_last(straight=pairs)
 
     def _seen(
         self,
@@ -242,13 +256,15 @@ class Record:
         """The record with one more fact: of the last step, or of the next one."""
         if self.slots is None:
             raise LineFault("no slots(K) before the first step")
-        last = len(self.steps) - 1
+        last = len(self.done) - (self.last is None)
         if step not in (last, last + 1) or step < 0:
             now = f"is at step {last}, and goes on with that or with step {last + 1}"
             raise LineFault(f"step {step}: the log {now if last >= 0 else 'begins with step 0'}")
         if step > last and (lack := self.lack()):
             raise LineFault(f"{lack}, but there is a later step")
-        known = self.steps[step] if step == last else Step()
+        known = Step()
+        if self.last is not None and step == last:
+            known = self.last
         for slot in (turn, view):
             if slot is not None and not 0 <= slot < self.slots:
                 raise LineFault(f"step {step}: slot {slot} is not in 0..{self.slots - 1}")
@@ -259,7 +275,8 @@ class Record:
                 raise LineFault(f"step {step}: more than one turn")
             if known.start or known.look:
                 raise LineFault(f"step {step}: it has a turn, and is no travel")
-            if turn not in self.steps[step - 1].view:
+            before = self.done[step - 1] if step == last or self.last is None else self.last
+            if turn not in before.view:
                 raise LineFault(f"step {step}: turn {turn}: no gateway there after step {step - 1}")
             known = replace(known, turn=turn)
         if view is not None:
@@ -268,15 +285,24 @@ class Record:
             known = replace(known, landmarks=known.landmarks | {landmark})
         if mark is not None:
             known = replace(known, marks=known.marks | {mark})
-        return replace(self, steps=(*self.steps[:step], known))
+        if self.last is None or step == last:
+            return replace(self, last=known)
+        states = self._states.then(self._state())
+        return replace(self, done=self.done.then(self.last), last=known, _states=states)
 
     def undone(self, steps: int) -> "Record":
         """The record without its last steps. Raises LineFault if there are not as many."""
-        last = len(self.steps) - 1
+        last = len(self.done) - (self.last is None)
         if not 0 < steps <= last:
             has = words.number(max(last, 0), "step")
             raise LineFault(f"undo of {words.number(steps, 'step')}: to take back: {has}")
-        return replace(self, steps=self.steps[:-steps])
+        left = last - steps
+        return replace(
+            self,
+            done=self.done.first(left),
+            last=self.done[left],
+            _states=self._states.first(left),
+        )
 
     def with_object(self, data: dict[str, Any]) -> "Record":
         """The record with what a JSON object says: a step, whole, or how many to take back.
@@ -294,7 +320,7 @@ class Record:
                 raise LineFault(f"{cut_short(json.dumps(key))}: not one of {known_keys}")
         first = "slots" if begins else "turn"
         rests = [name for name in RESTS if data.get(name)]
-        if (not begins and not self.steps) or (rests and not begins and "turn" not in data):
+        if (not begins and self.last is None) or (rests and not begins and "turn" not in data):
             first = "view"
         for key in dict.fromkeys((first, "view")):
             if key not in data:
@@ -310,7 +336,7 @@ class Record:
         if first != "view" and not is_number(data[first]):
             raise LineFault(f"{first}: a whole number is wanted")
         record = self.with_slots(data["slots"]) if begins else self
-        step = len(record.steps)
+        step = len(record.done) + (record.last is not None)
         if lack := record.lack():
             raise LineFault(f"{lack}, but there is a later step")
         if step and "turn" in data:
@@ -352,7 +378,8 @@ class Record:
                 record = record._known(step, name, tuple(value) if name == "shift" else value)
         if lack := record.lack():
             raise LineFault(lack)
-        return record._marked()._measured()
+        record._state()
+        return record
 
 
 def _names(kind: str, value: Any) -> list[str | None]:

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field, replace
 from topomap.documents.bisimulation import Chart
 from topomap.model.experience import DState, Experience
 from topomap.model.topology import Gateway, Place, TopologicalMap
+from topomap.search.living import Living, Told
 
 
 @dataclass(frozen=True)
@@ -34,6 +35,22 @@ def standing(experience: Experience, at: tuple[DState, ...]) -> Standing:
     return Standing(
         replace(world, landmarks=signs(experience, at)), at[-1], marker, orientation(experience, at)
     )
+
+
+def standing_of(told: Told, living: Living) -> Standing:
+    """The same of a hypothesis that is kept; it takes as long as the map is large."""
+    world, lying, visit = living.form.world(told), told.lying(), living.visit
+    where = {name: visit.back(down).gateway // told.slots for name, down in lying.items()}
+    landmarks = {**world.landmarks}
+    for name, place in where.items():
+        if name is not None:
+            landmarks[place] |= {f"marker({name})"}
+    compass: dict[Place, int] = {}
+    if not told.without_compass:
+        known = ((place, told.steps[place].compass) for place in world.stars)
+        compass = {place: slot for place, slot in known if slot is not None}
+    dstate = divmod(visit.gateway, told.slots)
+    return Standing(replace(world, landmarks=landmarks), dstate, where.get(None), compass)
 
 
 def signs(experience: Experience, at: Sequence[DState]) -> dict[Place, frozenset[str]]:

@@ -9,3 +9,4 @@ MOST_WALKED = 1000  # steps of a further walk that `explore` may look for
 LONGEST_WALK = 30  # steps of a further walk that `explore` looks for, unless told
 MOST_COUNTED = 40_000  # hypotheses that `follow` counts, unless told
 EXPORTS = ("graphml", "json", "dot", "clingraph")
+DRAWING = 5.0  # seconds that a drawing takes at most, about, unless told

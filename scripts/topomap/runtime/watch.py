@@ -16,6 +16,14 @@ T = TypeVar("T")
 SIGNALS = (signal.SIGINT, signal.SIGTERM)
 
 
+Late = Callable[[], bool]  # whether the time is over
+
+
+def never() -> bool:
+    """No time limit."""
+    return False
+
+
 class Stopped(Exception):
     """The search ended before all was found; the message says why."""
 
@@ -100,6 +108,16 @@ class Deadline:
         finally:
             self.at = at
 
+    @contextlib.contextmanager
+    def sooner(self, share: float) -> Iterator[None]:
+        """A part of the work may take such a share of the time that is left."""
+        at, now = self.at, time.monotonic()
+        self.at = None if at is None else now + share * max(0.0, at - now)
+        try:
+            yield
+        finally:
+            self.at = at
+
 
 class Signals:
     """As a context it takes SIGINT and SIGTERM, and notes that one came."""
@@ -146,13 +164,18 @@ class Watch:
     def tick(self) -> None:
         """Show progress; raises Stopped past the time limit, after a signal, and when another
         thread has ended the search."""
+        if self.late():
+            raise Stopped("timeout")
+
+    def late(self) -> bool:
+        """Whether the time limit has passed, for work that then goes a shorter way. It shows
+        progress; raises Stopped after a signal, and when another thread has ended the work."""
         self._progress.show(self.found)
         if self._signals and self._signals.came:
             raise Stopped(INTERRUPT)
         if self.ended is not None:
             raise Stopped(self.ended)
-        if self.deadline.passed:
-            raise Stopped("timeout")
+        return self.deadline.passed
 
 
 @contextlib.contextmanager

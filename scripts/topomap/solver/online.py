@@ -1,55 +1,109 @@
 """An experience as it happens: after each step how many hypotheses there are, the best maps,
 and what is certain.
 
-clingo keeps its program (``encodings/online.lp``), and each step grounds its own part alone. A
-step that is taken back is switched off; the step that comes in its place has a number of its
-own in the program. How many hypotheses there are, the search tells from those that there were
-a step before.
+While few hypotheses live, all of them are kept, each with its map, and a step enters the children
+of each (``search/living.py``): what that costs does not grow with the log. Where there are too many
+(LIVING), clingo takes over (``stepwise.py``), until they have become few again. Both give the same
+answers.
+
+But clingo's program grows with each step. Where it is too large, too (MOST_ATOMS), only SOME of the
+hypotheses are kept, those with the fewest paths and places: then little is proved, and the answers
+are partial, but a step costs no more than before.
 """
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from itertools import islice
-from typing import Any
+from functools import cached_property
 
-import clingo
-
-from topomap.model.experience import MARKER, DState, Experience, Step
-from topomap.model.query import Query
-from topomap.runtime.folders import ENCODINGS
+from topomap.model.compact import CompactMap, Numbering
+from topomap.model.exceptions import NamedException, exceptions_of
+from topomap.model.experience import DState, Experience, Step
+from topomap.model.found import UNPROVED
 from topomap.runtime.limits import DRIFT, MOST_COUNTED, STRETCH
 from topomap.runtime.watch import Attempt, Watch
-from topomap.search.hypothesis import OFTEN, Hypothesis
-from topomap.search.traversal import root
-from topomap.solver.boundaries import Boundaries
-from topomap.solver.solving import best
+from topomap.search.certainty import Certain, Certainty
+from topomap.search.hypothesis import OFTEN
+from topomap.search.living import Living, Told, Tree
+from topomap.solver.stepwise import MAPS, Stepwise
 
-TRIED = 10  # times as many nodes are visited to tell that there are more
-MAPS = 100  # best maps that are kept
+LIVING = 200_000  # places of all the hypotheses together, each of which is kept with its map
+FEWER = 4  # times fewer than these there are to be, before clingo is asked no longer
+MOST_ATOMS = 30_000  # ground atoms of clingo's program; if it has more, it is not asked any more
+SOME = 20_000  # places of the hypotheses that are kept then
+KEPT, KEPT_STEPS = 5_000, 500  # hypotheses, and steps, that are kept for when steps are taken back
+TOO_MANY = "too many hypotheses"  # why an answer is partial where only some are kept
 
-Same = tuple[int, int]  # two steps: the agent was at one place after both
-Linked = tuple[int, int, int, int]  # T S U R: gateways, seen from where it stood after T and U
+__all__ = ["Certain", "LivingMap", "OnlineSolver", "ReadMap", "Status"]
+
+Sizes = tuple[int, int, int, int, int]  # places, links, paths, genus, pending gateways
 
 
-@dataclass(frozen=True)
-class Certain:
-    """What holds in all hypotheses, said of steps."""
+class ReadMap:
+    """A best map, as the dstates of its hypothesis after each step."""
 
-    same: frozenset[Same] = frozenset()
-    new: frozenset[int] = frozenset()  # steps that came to a place for the first time
-    linked: frozenset[Linked] = frozenset()
+    def __init__(self, experience: Experience, at: tuple[DState, ...]):
+        self.experience, self.at = experience, at
 
-    def since(self, before: "Certain") -> "Certain":
-        """What was not certain before."""
-        return Certain(self.same - before.same, self.new - before.new, self.linked - before.linked)
+    @cached_property
+    def sizes(self) -> Sizes:
+        """How many places, links and paths it has, its genus, and how many pending gateways."""
+        one = CompactMap(Numbering(self.experience, path_axiom=False), self.at)
+        return (
+            len(one.places),
+            len(one.link) // 2,
+            one.number_of_paths(),
+            one.genus(),
+            one.number_of_pending(),
+        )
+
+    @property
+    def exceptions(self) -> Sequence[NamedException]:
+        """Its exceptions to consistent boundaries."""
+        return exceptions_of(self.experience, self.at)
+
+    def way(self, most: int) -> list[DState]:
+        """The dstates after the last steps, so many at most."""
+        return [*self.at[-most:]]
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, ReadMap | LivingMap) and self.at == other.at
+
+    def __hash__(self) -> int:
+        return hash(self.at)
+
+
+class LivingMap:
+    """A best map, as a hypothesis that is kept."""
+
+    def __init__(self, living: Living, told: Told):
+        self.living, self.slots = living, told.slots
+        self.sizes: Sizes = living.form.sizes
+        self.exceptions: Sequence[NamedException] = living.form.exceptions(told)
+
+    @cached_property
+    def at(self) -> tuple[DState, ...]:
+        """The dstates of its hypothesis after each step."""
+        return tuple(divmod(gateway, self.slots) for gateway in self.living.visit.gateways())
+
+    def way(self, most: int) -> list[DState]:
+        """The dstates after the last steps, so many at most."""
+        visit = self.living.visit
+        last = visit.gateways(max(0, visit.step + 1 - most))
+        return [divmod(gateway, self.slots) for gateway in last]
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, ReadMap | LivingMap) and self.at == other.at
+
+    def __hash__(self) -> int:
+        return hash(self.at)
 
 
 @dataclass(frozen=True)
 class Status:
     """What is known after a step. ``exact`` is false if there are more hypotheses than
-    ``hypotheses``; ``none_since`` is the first step after which there is none. ``best`` are the
-    dstates of each of the best maps, ``all_best`` tells whether they are all. ``fault`` is why
-    something is missing."""
+    ``hypotheses``; ``none_since`` is the first step after which there is none. ``maps`` are the
+    best maps, and ``best`` the dstates of each of them; ``all_best`` tells whether they are all.
+    ``fault`` is why something is missing."""
 
     step: int
     hypotheses: int | None = None
@@ -57,10 +111,15 @@ class Status:
     none_since: int | None = None
     kind: str | None = None
     cost: tuple[int, ...] = ()
-    best: tuple[tuple[DState, ...], ...] = ()
+    maps: tuple[ReadMap | LivingMap, ...] = ()
     all_best: bool = False
     certain: Certain | None = None
     fault: str | None = None
+
+    @property
+    def best(self) -> tuple[tuple[DState, ...], ...]:
+        """The dstates of each of the best maps."""
+        return tuple(one.at for one in self.maps)
 
 
 class OnlineSolver:
@@ -77,332 +136,259 @@ class OnlineSolver:
         stretch: int = STRETCH,
         tolerance: int = 0,
         path_axiom: bool = True,
+        living: int = LIVING,
+        most_atoms: int = MOST_ATOMS,
     ):
         """Begin where the first view was seen; ``drift`` and ``stretch`` tell, in percent, how far
-        shifts and lengths may be wrong, and ``tolerance``, in slots, how far bearings may be.
+        shifts and lengths may be wrong, and ``tolerance``, in slots, how far bearings may be. If
+        the hypotheses have more than ``living`` places, clingo is asked (from the start, if that is
+        0), until its program has more than ``most_atoms`` atoms."""
+        self.told = Told(slots, first, drift, stretch, tolerance)
+        self.most, self._living, self._most_atoms = most, living, most_atoms
+        self._asked = planar, bound, most, drift, stretch, tolerance, path_axiom
+        self._tree = Tree(self.told, planar, bound, path_axiom)
+        self._rules: Stepwise | None = None
+        self._searching = living > 0
+        self._large: int | None = None  # the step after which clingo's program was too large
+        self._some = False  # whether only some of the hypotheses are kept
+        self._certainty = Certainty(self.told)
+        self._experience: Experience | None = None
+        self._begin()
 
-        Without the ``path_axiom``, or where it is told which gateways are on one path, the best
-        maps are found anew after each step, as the program does not tell the number of paths then,
-        or what is left and right of them. Where bearings are not exact, there is no program: the
-        hypotheses are those of the search."""
-        marked = ([0] * (name in first.marks) for name in MARKER)
-        self.experience = Experience(
-            slots,
-            (first.view,),
-            (),
-            (first.landmarks,),
-            *marked,
-            compass=[first.compass],
-            things=[(kind, 0, name) for kind, name in first.things],
-            drift=drift,
-            stretch=stretch,
-            tolerance=tolerance,
-            straight=[] if first.straight is None else [first.straight],
-        )
-        self.most = most
-        asked = {"planar": planar, "no_path_axiom": not path_axiom}
-        self._query = Query(frozenset(part for part, wanted in asked.items() if wanted), bound)
-        self._parts = ["step", *(["planar"] if planar else [])]
-        arguments = ["0", "--project", "-c", f"drift={drift}", "-c", f"stretch={stretch}"]
-        if bound is not None:
-            self._parts.append("bound")
-            arguments += ["-c", f"places={bound}"]
-        self._control = clingo.Control(arguments)
-        self._control.load(str(ENCODINGS / "online.lp"))
-        self._control.load(str(ENCODINGS / "online/certain.lp"))
-        self._boundaries = Boundaries(self)
-        self._control.register_propagator(self._boundaries)
-        # no_path_axiom.lp demands an entry of topomap.lp, and is not loaded.
-        told = "straight_told. " * bool(self.experience.straight)
-        told += "no_path_axiom. " * (not path_axiom)
-        self._control.add("base", [], f"online. slots({slots}). {told}#external consistent.")
-        self.visits: list[int] = []  # the number of each step in the program
-        self._numbered = 0
-        self._level: list[tuple[int, ...]] = [(0,)]  # the hypotheses after some step
-        self._wide = False  # a later step has too many of them
+    def _begin(self) -> None:
+        """Stand at the start, as far as the search goes."""
         self._none: int | None = None
-        self._ground([], ("base", []))
+        self._level = [self._tree.root()]
+        self._done = 0  # the step after which these are the hypotheses
+        self._whole = 0, self._level  # the last step of which all hypotheses were kept
+        self._kept = {0: self._level}
+        self._many_kept = 1
+        self._certainty.step(self._level, False)
+
+    @property
+    def experience(self) -> Experience:
+        """What was seen and done so far."""
+        if self._experience is None:
+            self._experience = self.told.experience()
+        return self._experience
 
     @property
     def rules(self) -> int:
-        """The ground rules so far."""
-        return int(self._control.statistics["problem"]["lp"]["rules"])
+        """The ground rules so far; 0 if clingo was not asked."""
+        return 0 if self._rules is None else self._rules.rules
+
+    @property
+    def searching(self) -> bool:
+        """Whether the hypotheses after the last answer were found by search, and are all kept."""
+        return self._searching
 
     def step(self, step: Step) -> None:
         """Go a step on. The caller has seen to it that the turn leads to a gateway, and the marker
         is not out twice."""
-        self.experience = self.experience.then(step)
-        pairs = {"same": step.same, "apart": step.apart}
-        told = [
-            f"{name}({self.visits[earlier]},{self._numbered})."
-            for name, steps in pairs.items()
-            for earlier in steps
-            if earlier < self.experience.steps
-        ]
-        self._ground(told)
-
-    def _ground(self, told: Sequence[str], *parts: tuple[str, list[clingo.Symbol]]) -> None:
-        visit, step = self._numbered, self.experience.steps
-        if self.experience.tolerance:
-            self.visits.append(visit)
-            self._numbered += 1
-            return
-        facts = [*self.experience.facts_of(step, visit), *told]
-        if step:
-            facts.append(f"after({visit},{self.visits[-1]}).")
-        self._control.add(f"facts{visit}", [], " ".join(facts))
-        mine = [(part, [clingo.Number(visit)]) for part in self._parts]
-        self._control.ground([*parts, (f"facts{visit}", []), *mine])
-        self.visits.append(visit)
-        self._numbered += 1
+        self.told.add(step)
+        self._experience = None
 
     def undo(self, steps: int = 1) -> None:
         """Take the last steps back; there are as many."""
-        left = self.experience.steps - steps
-        self.experience = self.experience.cut(left)
-        for visit in self.visits[left + 1 :] if not self.experience.tolerance else ():
-            self._control.release_external(_atom("active", visit))
-        del self.visits[left + 1 :]
-        if len(self._level[0]) > left + 1:
-            self._level = [(0,)]
-        self._wide = False
-        if self._none is not None and self._none > left:
+        last = self.told.last - steps
+        self.told.cut(last)
+        self._experience = None
+        if self._rules is not None and self._rules.experience.steps > last:
+            self._rules.undo(self._rules.experience.steps - last)
+        if self._none is not None and last < self._none:
             self._none = None
+        if self._some and self._large is not None and last < self._large:
+            self._some, self._searching, self._large = False, self._living > 0, None
+            self._done = last + 1  # and so they are found again
+        if last >= self._done:
+            return
+        for step in [step for step in self._kept if step > last]:
+            self._many_kept -= len(self._kept.pop(step))
+        if (self._searching or self._some) and last in self._kept:
+            self._level, self._done = self._kept[last], last
+            if not self._some:
+                self._certainty.undo(self._level, last)
+                self._whole = last, self._level
+        elif self._some:
+            self._done, self._level = self._whole
+        else:  # what they were is found again, when it is asked for
+            origin = self._certainty.origin
+            self._certainty = Certainty(self.told)
+            self._certainty.origin = origin
+            self._begin()
 
     def status(self, watch: Watch) -> Status:
         """What is known now; at the time limit, what is known until then."""
-        known = Status(self.experience.steps)
+        known = Status(self.told.last)
         with Attempt() as attempt:
-            kind, cost, best = self.best(watch)
-            shown, every = tuple(best[:MAPS]), len(best) <= MAPS
-            known = replace(known, kind=kind, cost=cost, best=shown, all_best=every)
-            certain = self.certain(watch)
+            rules = self._program(watch)
+            if rules is None:
+                return self._partial(watch) if self._some else self._status(watch)
+            kind, cost, best = rules.best(watch)
+            maps = tuple(ReadMap(self.experience, at) for at in best[:MAPS])
+            every = len(best) <= MAPS
+            known = replace(known, kind=kind, cost=cost, maps=maps, all_best=every)
+            certain = rules.certain(watch)
             known = replace(known, certain=certain)
-            number, exact = self.count(watch)
-            if (
-                certain and not certain.new and self._none is None
-            ):  # where a step begins is always new
-                self._none, number, exact = known.step, 0, True
+            number, exact, none = rules.number(certain, watch)
             if number >= 0:
-                known = replace(known, hypotheses=number, exact=exact, none_since=self._none)
+                known = replace(known, hypotheses=number, exact=exact, none_since=none)
+            self._return(rules, watch)
         return replace(known, fault=attempt.fault)
 
     def count(self, watch: Watch) -> tuple[int, bool]:
         """How many hypotheses there are, and true; or a number that they are more than (-1 if
         none was found as yet), and false."""
+        rules = self._program(watch)
+        if rules is not None:
+            return rules.count(watch)
+        if self._some:
+            return min(len(self._level) - 1, self.most), False
         if self._none is not None:
             return 0, True
-        node = root(self.experience, self._query)
-        while len(self._level[0]) <= self.experience.steps:
-            level = None if self._wide else self._next(node, watch)
-            if level is None:
-                self._wide = True
-                return self._more(node, watch)
-            if not level:
-                self._none = len(self._level[0])
-                return 0, True
-            self._level = level
-        return len(self._level), True
+        return min(len(self._level), self.most), len(self._level) <= self.most
 
-    def _next(self, node: Hypothesis, watch: Watch) -> list[tuple[int, ...]] | None:
-        """The next level of the tree, if it is not too large."""
-        level: list[tuple[int, ...]] = []
-        before = tuple(node.at)
-        for number, at in enumerate(self._level):
-            _go(node, before, at)
-            before = at
-            level += [(*at, arrival) for arrival in node.children()]
-            if len(level) > self.most:
-                return None
+    def _advance(self, watch: Watch) -> None:
+        """Find the hypotheses after the last step by search, unless they are too many."""
+        tree = self._tree
+        while self._none is None and self._done < self.told.last:
+            if not self._searching and not self._some:
+                return
+            level: list[Living] = []
+            plain, places = True, 0
+            for number, one in enumerate(self._level):
+                if number % OFTEN == 0:
+                    watch.tick()
+                children = tree.children(one)
+                plain &= len(children) == 1
+                for arrival in children:
+                    level.append(tree.enter(one, arrival))
+                    places += len(level[-1].form.number)
+                if places > self._living and not self._some:
+                    self._searching = False
+                    return
+            if self._some and places > SOME:
+                level = _simplest(level)
+            if level or self._some:
+                self._done += 1
+                self._level = level
+                if not self._some:
+                    self._certainty.step(level, plain)
+                    self._whole = self._done, level
+                self._keep()
+            else:
+                self._none = self._done + 1
+
+    def _keep(self) -> None:
+        """Keep the hypotheses after this step for when later ones are taken back."""
+        kept = self._kept
+        kept[self._done] = self._level
+        self._many_kept += len(self._level)
+        while len(kept) > 1 and (self._many_kept > KEPT or len(kept) > KEPT_STEPS):
+            self._many_kept -= len(kept.pop(next(iter(kept))))
+
+    def _status(self, watch: Watch) -> Status:
+        """The status, where the hypotheses are at hand."""
+        step = self.told.last
+        if self._none is not None:
+            return Status(step, 0, True, self._none, all_best=True, certain=Certain())
+        number, exact = self.count(watch)
+        known = Status(step, number, exact, certain=self._certainty.after(step))
+        with Attempt() as attempt:
+            kind, cost, best = self._best(watch)
+            maps = tuple(LivingMap(one, self.told) for one in best[:MAPS])
+            known = replace(known, kind=kind, cost=cost, maps=maps, all_best=len(best) <= MAPS)
+        return replace(known, fault=attempt.fault)
+
+    def _partial(self, watch: Watch) -> Status:
+        """The status, where only some of the hypotheses are at hand."""
+        known = Status(self.told.last, fault=TOO_MANY)
+        if not self._level:
+            return known
+        number, exact = self.count(watch)
+        _, cost, best = self._best(watch)
+        maps = tuple(LivingMap(one, self.told) for one in best[:MAPS])
+        return replace(known, hypotheses=number, exact=exact, kind=UNPROVED, cost=cost, maps=maps)
+
+    def _best(self, watch: Watch) -> tuple[str, tuple[int, ...], list[Living]]:
+        """The best maps: of what kind they are, and their cost."""
+        closed = [one for one in self._level if one.form.closed]
+        costs: dict[tuple[int, int], list[Living]] = {}
+        for one in closed or self._level:
+            costs.setdefault(one.form.cost, []).append(one)
+        least: tuple[int, ...] = ()
+        best: list[Living] = []
+        for paths, places in sorted(costs):
+            for number, one in enumerate(costs[paths, places]):
+                if number % OFTEN == 0:
+                    watch.tick()
+                cost = len(one.form.exceptions(self.told)), paths, places
+                if not best or cost < least:
+                    least, best = cost, []
+                if cost == least:
+                    best.append(one)
+            if least[0] == 0:  # and others with none have more paths, or places
+                break
+        return "optimal" if closed else "best so far", least, best
+
+    def _program(self, watch: Watch) -> Stepwise | None:
+        """The program, where clingo is to be asked; it knows all steps. None, if the hypotheses
+        after the last step are at hand, or some of them."""
+        self._advance(watch)
+        told = self.told
+        if self._searching or self._some:
+            return None
+        if self._rules is None:
+            self._rules = Stepwise(told.slots, told.steps[0], *self._asked)
+            self._rules.begin([tuple(one.visit.gateways()) for one in self._whole[1]])
+        rules = self._rules
+        while rules.size <= self._most_atoms:
+            if rules.experience.steps == told.last:
+                return rules
+            watch.tick()
+            rules.step(told.steps[rules.experience.steps + 1])
+        self._rules, self._some, self._large = None, True, told.last
+        self._done, self._level = self._whole
+        self._advance(watch)
+        return None
+
+    def _return(self, rules: Stepwise, watch: Watch) -> None:
+        """Go on by search, if clingo's hypotheses have become few."""
+        found, slots = rules.level, self.told.slots
+        if found is None:
+            return
+        places = sum(gateway == step * slots for at in found for step, gateway in enumerate(at))
+        if places * FEWER > self._living:
+            return
+        level: list[Living] = []
+        way = [self._tree.root()]  # to the hypothesis before
+        before: tuple[int, ...] = (0,)
+        for number, at in enumerate(sorted(found)):
             if number % OFTEN == 0:
                 watch.tick()
-        return level
-
-    def _more(self, node: Hypothesis, watch: Watch) -> tuple[int, bool]:
-        """The same by the depth, where a level between is too large to be kept."""
-        leaves = nodes = deepest = 0
-        last = self.experience.steps
-        kept = []
-        before = tuple(node.at)
-        for top in self._level:
-            border = [top]
-            while border:
-                _go(node, before, at := border.pop())
-                before = at
-                nodes += 1
-                if nodes % OFTEN == 0:
-                    watch.tick()
-                for arrival in node.children():
-                    if len(at) < last:
-                        border.append((*at, arrival))
-                    else:
-                        leaves += 1
-                        kept.append((*at, arrival))
-                if leaves > self.most or nodes > TRIED * self.most:
-                    return min(leaves - 1, self.most), False
-                deepest = max(deepest, len(at))
-        if kept:
-            self._level, self._wide = sorted(kept), False
-        else:
-            self._none = deepest
-        return leaves, True
-
-    def best(self, watch: Watch) -> tuple[str | None, tuple[int, ...], list[tuple[DState, ...]]]:
-        """The best maps, one more than ``MAPS`` at most: of what kind they are, and their cost.
-
-        Maps without exceptions to consistent boundaries are looked for step by step. Where all
-        closed maps have some, or all maps, the best ones are found anew, of the whole."""
-        seen = self.experience
-        if "no_path_axiom" in self._query.parts or seen.straight or seen.tolerance:
-            return self._anew(watch)
-        closed = [(_atom("closed", self.visits[-1]), True)]
-        for kind, assumed in (("optimal", closed), ("best so far", [])):
-            cost, found = self._best(watch, assumed, consistent=True)
-            if found:
-                return kind, (0, *cost), sorted(found)
-            if self._best(watch, assumed, consistent=False, most=1)[1]:
-                return self._anew(watch)
-        return None, (), []
-
-    def _anew(self, watch: Watch) -> tuple[str | None, tuple[int, ...], list[tuple[DState, ...]]]:
-        """The best maps, found from scratch."""
-        proved = (one for one in best(self.experience, self._query, watch) if one and one.proved)
-        maps = [*islice(proved, MAPS + 1)]
-        if not maps:
-            return None, (), []
-        return maps[0].kind, maps[0].cost, sorted(one.at for one in maps)
-
-    def _best(
-        self,
-        watch: Watch,
-        assumed: Sequence[tuple[clingo.Symbol, bool]],
-        consistent: bool,
-        most: int = MAPS + 1,
-    ) -> tuple[tuple[int, ...], list[tuple[DState, ...]]]:
-        """Maps with the fewest paths, then the fewest places, with ``consistent`` boundaries or of
-        any kind, at ``most`` so many; and what they cost."""
-        found: list[tuple[DState, ...]] = []
-        cost: list[int] = []
-
-        def take(model: clingo.Model) -> bool:
-            if model.optimality_proven or not consistent:
-                cost[:] = model.cost
-                found.append(self._dstates(model))
-            return len(found) < most
-
-        self._configure("auto", "optN" if consistent else "ignore")
-        self._control.assign_external(_atom("consistent"), consistent)
-        try:
-            self._solve(watch, assumed, take)
-        finally:
-            self._control.assign_external(_atom("consistent"), False)
-        return tuple(cost), found
-
-    def certain(self, watch: Watch) -> Certain | None:
-        """What holds in all hypotheses; nothing, if there is none. None where there is no program,
-        and the search has not found all of them, because they are too many."""
-        if self.experience.tolerance:
-            _, exact = self.count(watch)
-            return self._certain_of(self._level) if exact else None
-        atoms: list[clingo.Symbol] = []
-
-        def take(model: clingo.Model) -> bool:
-            atoms[:] = model.symbols(shown=True)
-            return True
-
-        self._configure("cautious", "ignore")
-        self._solve(watch, [], take)
-        step = {visit: number for number, visit in enumerate(self.visits)}
-        same, new = set(), set()
-        first: dict[int, tuple[int, int]] = {}
-        for atom in atoms:
-            numbers = [argument.number for argument in atom.arguments]
-            if atom.name == "at" or any(number not in step for number in numbers[:2]):
-                continue
-            if atom.name == "new":
-                new.add(step[numbers[0]])
-            elif atom.name == "together":
-                same.add((step[numbers[0]], step[numbers[1]]))
-            elif atom.name == "one_place":
-                here, there = step[numbers[0]], step[numbers[1]]
-                first[there] = min(first.get(there, (here, numbers[2])), (here, numbers[2]))
-        return Certain(frozenset(same), frozenset(new), frozenset(self._linked(first)))
-
-    def _certain_of(self, hypotheses: Sequence[tuple[int, ...]]) -> Certain:
-        """The same of these hypotheses."""
-        seen = self.experience
-        if self._none is not None or not hypotheses:
-            return Certain(frozenset(), frozenset(), frozenset())
-        slots = seen.slots
-        stars = [sorted(view) for view in seen.views]
-        places = [tuple(gateway // slots for gateway in at) for at in hypotheses]
-        steps = range(seen.steps + 1)
-        same, new = set(), set()
-        first: dict[int, tuple[int, int]] = {}
-        for later in steps:
-            if all(at[later] == later for at in places):
-                new.add(later)
-            for earlier in range(later):
-                if any(at[earlier] != at[later] for at in places):
-                    continue
-                same.add((earlier, later))
-                # As a gateway of the earlier visit, by its number there.
-                turned = {
-                    (star.index(at[later] % slots) - star.index(at[earlier] % slots)) % len(star)
-                    for at in hypotheses
-                    for star in [stars[at[later] // slots]]
-                }
-                if len(turned) == 1:
-                    first.setdefault(later, (earlier, stars[earlier][turned.pop()]))
-        return Certain(frozenset(same), frozenset(new), frozenset(self._linked(first)))
-
-    def _linked(self, first: dict[int, tuple[int, int]]) -> Iterator[Linked]:
-        """The links of which it is certain that the steps that made them were at places seen
-        before: said of the first visits there."""
-        for step, turn in enumerate(self.experience.turns, 1):
-            if turn is None:
-                continue
-            if step - 1 in first or step in first:
-                here, shift = first.get(step - 1, (step - 1, 0))
-                there, slot = first.get(step, (step, 0))
-                yield here, self.experience.slot_at(here, shift, step - 1, turn), there, slot
-
-    def _dstates(self, model: clingo.Model) -> tuple[DState, ...]:
-        step = {visit: number for number, visit in enumerate(self.visits)}
-        facts = [
-            [argument.number for argument in atom.arguments]
-            for atom in model.symbols(shown=True)
-            if atom.name == "at"
-        ]
-        at = {step[visit]: (step[place], slot) for visit, place, slot in facts if visit in step}
-        return tuple(at[number] for number in range(len(self.visits)))
-
-    def _configure(self, enumerate_by: str, optimize_by: str) -> None:
-        configuration: Any = self._control.configuration.solve
-        configuration.enum_mode, configuration.opt_mode = enumerate_by, optimize_by
-
-    def _solve(
-        self,
-        watch: Watch,
-        assumed: Sequence[tuple[clingo.Symbol, bool]],
-        take: Callable[[clingo.Model], bool],
-    ) -> None:
-        with self._control.solve(assumed, on_model=take, async_=True) as handle:
-            while not handle.wait(0.1):
-                watch.tick()  # ends the call, if it raises
-            handle.get()
+            pairs = enumerate(zip(before, at, strict=False))
+            common = next((step for step, (one, other) in pairs if one != other), len(before))
+            del way[common:]
+            for arrival in at[common:]:
+                way.append(self._tree.enter(way[-1], arrival))
+            level.append(way[-1])
+            before = at
+        self._level, self._done, self._none = level, self.told.last, None
+        self._kept, self._many_kept = {self._done: level}, len(level)
+        self._whole = self._done, level
+        self._certainty.begin(level, self._done)
+        self._searching = True
 
 
-def _atom(name: str, *numbers: int) -> clingo.Symbol:
-    return clingo.Function(name, [clingo.Number(number) for number in numbers])
-
-
-def _go(node: Hypothesis, before: tuple[int, ...], at: tuple[int, ...]) -> None:
-    """Go from one node of the tree, where it stands, to another one."""
-    common = min(len(before), len(at))
-    while before[:common] != at[:common]:
-        common -= 1
-    for _ in range(common, len(node.at)):
-        node.undo()
-    for arrival in at[common:]:
-        node.enter(arrival)
+def _simplest(level: Sequence[Living]) -> list[Living]:
+    """Those hypotheses with the fewest paths, then the fewest places, that have SOME places at
+    most, in their order."""
+    order = sorted(range(len(level)), key=lambda number: level[number].form.cost)
+    places = 0
+    chosen: list[int] = []
+    for number in order:
+        places += len(level[number].form.number)
+        if places > SOME and chosen:
+            break
+        chosen.append(number)
+    return [level[number] for number in sorted(chosen)]
