@@ -1,14 +1,20 @@
 """Worlds from street networks in GraphML."""
 
+import json
 import os
+import random
 
 import networkx as nx
 import pytest
-from conftest import SHARED, run
+from conftest import SHARED, TRIED, run
+from oracles.worlds import random_world
 from topomap.model.facts import parse
 from topomap.runtime.errors import InputError
+from topomap.worlds.census import census, classes, look
+from topomap.worlds.courses import Layout, clashes, exits_of, layout
 from topomap.worlds.environment import grid
 from topomap.worlds.files import load
+from topomap.worlds.plan import Exit, Plan, Reading, Way
 
 
 def write(tmp_path, graph):
@@ -23,8 +29,15 @@ def square(kind=nx.MultiDiGraph, scale=100.0, x="x", y="y", **attributes):
     for name, east, north in (("a", 0, 0), ("b", 0, 1), ("c", 1, 1), ("d", 1, 0)):
         graph.add_node(name, **{x: east * scale, y: north * scale})
     for one, two in ("ab", "bc", "cd", "da"):
-        graph.add_edge(one, two)
+        join(graph, one, two)
     return graph
+
+
+def join(graph, one, two, **data):
+    """A way that can be gone in both directions."""
+    graph.add_edge(one, two, **data)
+    if graph.is_directed():
+        graph.add_edge(two, one, **data)
 
 
 def test_bearings_become_slots(tmp_path):
@@ -41,7 +54,6 @@ def test_bearings_become_slots(tmp_path):
 
 def test_a_two_way_pair_is_one_way_and_loops_go(tmp_path):
     graph = square()
-    graph.add_edge("b", "a")
     graph.add_edge("a", "a")
     graph.add_node("z", x=5.0, y=5.0)
     made, warnings, *_ = load(write(tmp_path, graph), None, 4, 0)
@@ -68,7 +80,7 @@ def test_geographic_coordinates_are_known_by_their_crs(tmp_path, crs):
     graph = nx.DiGraph(crs=crs)
     graph.add_node("a", x=20.0, y=60.0)
     graph.add_node("b", x=20.01, y=60.005)
-    graph.add_edge("a", "b")
+    join(graph, "a", "b")
     assert load(write(tmp_path, graph), None, 16, 0)[0].map.stars["a"] == {2}
 
 
@@ -108,11 +120,13 @@ def test_headers_hold_no_facts(tmp_path):
 
 def test_parallel_ways_and_parts_are_told(tmp_path):
     graph = square()
-    graph.add_edge("a", "b")
-    with pytest.raises(InputError, match=r"place a: the ways to b and b .* straight"):
+    join(graph, "a", "b")
+    with pytest.raises(
+        InputError, match=r"place a: the ways to b .* and b .* share slot 0; place b"
+    ):
         load(write(tmp_path, graph), None, 4, 0)
     apart = nx.disjoint_union(square(), square(scale=70))
-    assert "not connected" in load(write(tmp_path, apart), None, 4, 0)[1][0]
+    assert "not connected" in load(write(tmp_path, apart), None, 4, 0).warnings[0]
 
 
 def test_degrees_are_scaled_by_the_latitude(tmp_path):
@@ -121,12 +135,15 @@ def test_degrees_are_scaled_by_the_latitude(tmp_path):
     graph = nx.DiGraph(crs="epsg:4326")
     graph.add_node("a", x=20.0, y=60.0)
     graph.add_node("b", x=20.01, y=60.005)
-    graph.add_edge("a", "b")
+    join(graph, "a", "b")
     assert load(write(tmp_path, graph), None, 16, 0)[0].map.stars["a"] == {2}
     graph.graph["crs"] = "+proj=utm +zone=34"
     assert load(write(tmp_path, graph), None, 16, 0)[0].map.stars["a"] == {3}
     graph.graph.clear()
-    assert load(write(tmp_path, graph), None, 16, 0)[0].map.stars["a"] == {2}
+    assert load(write(tmp_path, graph), None, 16, 0)[0].map.stars["a"] == {3}
+    degrees = load(write(tmp_path, graph), Reading(degrees=True), 16, 0)
+    assert degrees.environment.map.stars["a"] == {2}
+    assert not degrees.warnings
     lonlat = nx.relabel_nodes(graph, {})
     for node in lonlat.nodes.values():
         node["lon"], node["lat"] = node.pop("x"), node.pop("y")
@@ -147,7 +164,7 @@ def broken(**nodes):
         (broken(a={}), "place a has no coordinates"),
         (broken(a={"x": "here", "y": 0.0}), "place a has no coordinates"),
         (broken(a={"x": float("nan"), "y": 0.0}), "place a has no coordinates"),
-        (broken(d={"x": 1.0, "y": 200.0}), "fall into one slot"),
+        (broken(d={"x": 1.0, "y": 200.0}), "share slot"),
         (broken(a={"x": 0.0, "y": 100.0}), "are at one point"),
         (nx.Graph(), "no ways"),
     ],
@@ -162,10 +179,8 @@ def test_networks_refused(tmp_path, graph, fault):
 def test_two_ways_in_one_slot_name_the_place(tmp_path):
     graph = square()
     graph.add_node("e", x=10.0, y=90.0)
-    graph.add_edge("a", "e")
-    with pytest.raises(
-        InputError, match=r"place a: the ways to b and e fall into one slot, 0 of 4"
-    ):
+    join(graph, "a", "e")
+    with pytest.raises(InputError, match=r"place a: the ways to b .* and e .* share slot 0"):
         load(write(tmp_path, graph), None, 4, 0)
     assert len(load(write(tmp_path, graph), None, 64, 0)[0].map.edges()) == 5
 
@@ -202,7 +217,152 @@ def test_the_manhattan_piece():
     file = SHARED / "manhattan.graphml"
     if not file.exists():
         pytest.skip(f"the real map is not here: {file}")
-    made, warnings, *_ = load(file, None, 4, 29)
-    assert not warnings
+    with pytest.raises(InputError, match="63 of 73 ways can be gone one way only"):
+        load(file)
+    made, warnings, *_ = load(file, None, 4, 29, two_way=True)
+    assert warnings == [f"{file}: one-way ways taken as two-way: 63"]
+    chosen = load(file, two_way=True)
+    assert chosen.layout.slots == 4
+    assert chosen.layout.margin > 30
+    assert chosen.environment.map.isomorphic(made.map)
     assert (len(made.map.stars), len(made.map.edges()), made.map.genus()) == (46, 73, 0)
     assert made.map.path_axiom_fault() is None
+
+
+CASES = SHARED.parent / "cases"
+
+
+@pytest.mark.skipif(not CASES.exists(), reason=f"the small cases are not here: {CASES}")
+def test_the_reported_files():
+    crescent = CASES / "crescent.graphml"
+    with pytest.raises(
+        InputError, match=r"1 of 5 ways can be gone one way only \(a to b\); --two-way"
+    ):
+        load(crescent)
+    world = load(crescent, two_way=True).environment.map
+    assert (len(world.stars), len(world.edges()), world.slots) == (4, 5, 4)
+    assert world.stars == {"a": {0, 1}, "b": {0, 1, 2, 3}, "c": {1, 3}, "d": {0, 1}}
+    frame = load(CASES / "robot-frame.graphml", Reading(degrees=False), 16, 0)
+    assert frame.environment.map.stars["dock"] == {2, 6}
+    assert not frame.warnings
+    loop = CASES / "selfloop.graphml"
+    told = load(loop, two_way=True).warnings
+    assert [line.partition(": ")[2] for line in told] == [
+        "loops left out: 1",
+        "one-way ways taken as two-way: 1",
+    ]
+    with pytest.raises(InputError, match="the way from place b back to itself has no course"):
+        load(loop, Reading(loops=True), two_way=True)
+
+
+def test_a_way_has_its_course(tmp_path):
+    """A way that leaves to the south-east and comes from there; as WKT, and as a list of points, also
+    the other way round; and a loop with a course, which is kept only if that is asked for."""
+    for course in (
+        "LINESTRING (0 0, 50 0, 0 100)",
+        "[[0, 100], [50, 0], [0, 0]]",
+        "linestring(0 0,50 0,0 100)",
+    ):
+        graph = square(nx.Graph)
+        graph.remove_edge("a", "b")
+        graph.add_edge("a", "b", geometry=course)
+        world = load(write(tmp_path, graph), None, 8, 0).environment.map
+        assert world.links["a", 3] == ("b", 3)
+    looped = square(nx.MultiGraph)
+    looped.add_edge("a", "a", geometry="LINESTRING (0 0, -40 0, -40 -40, 0 -40, 0 0)")
+    file = write(tmp_path, looped)
+    assert load(file).warnings == [f"{file}: loops left out: 1"]
+    kept = load(file, Reading(loops=True)).environment.map
+    assert kept.links["a", 3] == ("a", 2)
+    for fault in (
+        "LINESTRING (0 0)",
+        "POINT (1 2)",
+        "[[0, 0], [1]]",
+        "LINESTRING (0 0, nan 1)",
+        "[",
+    ):
+        graph = square(nx.Graph)
+        graph.add_edge("a", "b", geometry=fault)
+        with pytest.raises(InputError, match="the way from place a to b: its geometry"):
+            load(write(tmp_path, graph))
+
+
+def test_the_fewest_slots_and_the_best_turn_are_chosen():
+    """Against trying: no fewer slots part the exits at any of many turns; the chosen turn does, and
+    may be off by its margin, but by no more than twice the margin in one of both directions."""
+    for number in range(150):
+        draw = random.Random(f"slots {number}")
+        ways = tuple(
+            Way((Exit(f"p{draw.randrange(4)}", draw.uniform(-360, 720)), Exit(f"q{n}", 0.0)))
+            for n in range(draw.randint(1, 9))
+        )
+        plan, exits = Plan("drawn", ways), exits_of(ways)
+        at = layout("drawn", plan)
+        for off in (-0.999, -0.5, 0, 0.5, 0.999):
+            assert not clashes(ways, exits, at._replace(north=at.north + off * at.margin))
+        turned = [at.north + sign * (at.margin + 1e-6) for sign in (1, -1)]
+        whole = at.margin >= 180 / at.slots
+        assert whole or any(clashes(ways, exits, at._replace(north=turn)) for turn in turned)
+        for fewer in range(4, at.slots, 2):
+            turns = (n * 360 / fewer / 500 for n in range(500))
+            free = [turn for turn in turns if not clashes(ways, exits, Layout(fewer, turn, 0))]
+            assert not free
+        TRIED["layouts of slots compared with trying"] += 1
+
+
+def test_what_nothing_parts_is_listed():
+    ways = tuple(Way((Exit("p", 90.0), Exit(f"q{n}", 0.0))) for n in range(3))
+    with pytest.raises(InputError) as error:
+        layout("drawn", Plan("drawn", ways))
+    assert str(error.value) == (
+        "drawn: up to 360 slots do not part all ways, however they are turned: place p: the ways "
+        "to q0 (90.0 degrees) and q1 (90.0) share slot 90; place p: the ways to q0 (90.0 degrees) "
+        "and q2 (90.0) share slot 90"
+    )
+
+
+def test_exits_are_paired_where_that_is_asked_for(tmp_path):
+    """Three ways of a place: the two that are most nearly straight are on one path."""
+    graph = nx.Graph(crs="plane")
+    for name, x, y in (("m", 0, 0), ("n", 5, 100), ("s", 10, -100), ("w", -100, -40)):
+        graph.add_node(name, x=float(x), y=float(y))
+    graph.add_edges_from([("m", "n"), ("m", "s"), ("m", "w")])
+    file = write(tmp_path, graph)
+    world = load(file, None, 8, 0, straight=20).environment.map
+    assert {(one[1], two[1]) for one, two in world.across.items()} == {(0, 4), (4, 0)}
+    assert load(file, None, 8, 0, straight=5).environment.map.across == {}
+    made = run(
+        "topomap", "generate", "world", file, "--straight", "20", "--slots", "8", "--route", "tour"
+    )
+    assert "straight(" in made.stdout
+    assert parse(made.stdout, "made").straight
+
+
+def test_a_census_says_what_a_world_is(tmp_path):
+    """Its classes of dstates are those of the pairwise definition; and it is printed."""
+    for number in range(40):
+        world = random_world(random.Random(f"census {number}"))
+        every = [*world.gateways()]
+        if len(every) != len(world.links):
+            continue
+        of = classes(world, {gateway: look(world, gateway) for gateway in every})
+        for one in every:
+            for other in every:
+                same = world.indistinguishable(one, world, other)
+                assert (of[one] == of[other]) is same
+                TRIED["pairs of dstates compared with the definition"] += 1
+    told = census(grid(3, 3).map)
+    assert (
+        told.document() | {"dstates": 24, "classes": 6, "with_compass": 24, "views": 6}
+        == told.document()
+    )
+    assert (told.planar, told.path_axiom, told.exceptions, told.perpendicular) == (
+        True,
+        None,
+        0,
+        True,
+    )
+    file = write(tmp_path, square())
+    made = run("topomap", "generate", "world", file, "--route", "tour", "--json")
+    assert json.loads(made.stdout)["world"]["places"] == 4
+    assert "4 places, 4 ways" in run("topomap", "generate", "world", file, "--route", "tour").stderr

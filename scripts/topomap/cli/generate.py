@@ -21,6 +21,7 @@ from topomap.runtime.limits import MOST_STEPS
 from topomap.runtime.status import DONE
 
 if TYPE_CHECKING:
+    from topomap.worlds.environment import Environment
     from topomap.worlds.instance import Instance
 
 
@@ -34,7 +35,7 @@ def add(group: Any) -> None:
   topomap generate torus 3 3 --route walk --steps 20 --seed 1
   topomap generate crescents 2 4 --route tour
   topomap generate grid 4 4 --route snake --compass --odometry 5 --seed 1
-  topomap generate network city.graphml --slots 4 --north 29 --route tour --signs 0.3""",
+  topomap generate world city.graphml --slots 4 --north 29 --route tour --signs 0.3""",
     )
     common = Parser(add_help=False)
     add = common.add_argument
@@ -64,8 +65,14 @@ def add(group: Any) -> None:
 def run(args: argparse.Namespace) -> int:
     """Explore an environment and write the instance."""
     from topomap.model.found import steps_json
+    from topomap.worlds.census import census
 
-    made = instance_of(args)
+    world = environment_of(args)
+    known = census(world.map) if args.json or args.kind in ("world", "network") else None
+    if known and not args.json:
+        for line in known.lines():
+            say(f"{world.name}: {line}")
+    made = instance_of(args, world)
     if made.fault:
         fault = "the environment's own map breaks the path axiom"
         say(f"{made.name}: {fault}; --no-path-axiom keeps it")
@@ -86,17 +93,18 @@ def run(args: argparse.Namespace) -> int:
             "file": target,
             "header": made.header,
             "steps": made.experience.steps,
+            "world": known and known.document(),
             "facts": None if target else made.experience.facts(),
         }
         print(formats.line(summary), end="")
     return DONE
 
 
-def instance_of(args: argparse.Namespace) -> "Instance":
-    """The instance that a call of ``generate`` makes."""
+def instance_of(args: argparse.Namespace, world: "Environment | None" = None) -> "Instance":
+    """The instance that a call of ``generate`` makes; in a ``world``, if that was made before."""
     from topomap.api.generate import generate
 
-    world = environment_of(args)
+    world = world or environment_of(args)
     if args.route == "walk" and args.steps is None:
         raise InputError("topomap generate: --route walk needs --steps")
     return generate(

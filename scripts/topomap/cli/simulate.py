@@ -40,7 +40,7 @@ def add(group: Any) -> None:
   topomap simulate grid 3 3
   topomap simulate maze 4 4 --seed 2 --signs 0.3 --perpendicular
   topomap simulate torus 3 3 --no-path-axiom --signs 0.5
-  topomap simulate network city.graphml --slots 4 --north 29 --signs 0.3 --planar
+  topomap simulate world city.graphml --slots 4 --north 29 --signs 0.3 --planar
   topomap simulate list instances/worlds.txt""",
     )
     common = Parser(add_help=False)

@@ -1,0 +1,138 @@
+"""What a world is: how large, which properties its map has, and what no walk tells apart."""
+
+from collections import Counter
+from collections.abc import Iterator, Mapping
+from itertools import combinations
+from typing import Any, NamedTuple
+
+from topomap.model.topology import Gateway, Place, TopologicalMap
+
+MOST_PATHS = 2_000  # of each two of these it is asked whether they meet
+
+
+class Census(NamedTuple):
+    """What is told of a world.
+
+    ``planar`` is whether it is embedded in the plane, as its slots have it; ``path_axiom`` how it
+    breaks the path axiom, or None; ``exceptions`` the number of exceptions to consistent
+    boundaries, and ``perpendicular`` whether it is qualitatively perpendicular (the paper, section
+    IV), both None if there are too many paths, or circular ones. ``views`` is how many kinds of
+    views there are, and ``classes`` how many classes of dstates such that no walk in turns tells
+    two of a class apart; ``with_compass`` is the same where a compass is read, too.
+    """
+
+    places: int
+    ways: int
+    slots: int
+    components: int
+    planar: bool
+    path_axiom: str | None
+    exceptions: int | None
+    perpendicular: bool | None
+    loops: int
+    dead_ends: int
+    dstates: int
+    views: int
+    classes: int
+    with_compass: int
+
+    def document(self) -> dict[str, Any]:
+        """The same for JSON."""
+        return self._asdict()
+
+    def lines(self) -> Iterator[str]:
+        """The same in words, each line a sentence."""
+        yield (
+            f"{self.places} places, {self.ways} ways, {self.slots} slots; loops: {self.loops}, "
+            f"dead ends: {self.dead_ends}, components: {self.components}"
+        )
+        yield (
+            f"planar as embedded: {_yes(self.planar)}; path axiom: "
+            f"{self.path_axiom or 'holds'}; exceptions to consistent boundaries: "
+            f"{'not counted' if self.exceptions is None else self.exceptions}; perpendicular: "
+            f"{'not told' if self.perpendicular is None else _yes(self.perpendicular)}"
+        )
+        yield (
+            f"{self.views} kinds of views; of {self.dstates} dstates, walks tell {self.classes} "
+            f"apart, and {self.with_compass} with a compass"
+        )
+
+
+def _yes(holds: bool) -> str:
+    return "yes" if holds else "no"
+
+
+def census(world: TopologicalMap) -> Census:
+    """What a world is."""
+    fault = world.path_axiom_fault()
+    paths = world.paths()
+    small = fault is None and len(paths) <= MOST_PATHS
+    looks = {gateway: look(world, gateway) for gateway in world.gateways()}
+    edges = world.edges()
+    return Census(
+        len(world.stars),
+        len(edges),
+        world.slots,
+        len(world.components()),
+        world.genus() == 0,
+        fault,
+        sum(1 for _ in world.exceptions()) if small else None,
+        perpendicular(paths) if small else None,
+        sum(one[0] == other[0] for one, other in edges),
+        sum(len(star) == 1 for star in world.stars.values()),
+        len(looks),
+        len({*looks.values()}),
+        len({*classes(world, looks).values()}),
+        len({*classes(world, {g: (seen, g[1]) for g, seen in looks.items()}).values()}),
+    )
+
+
+def look(world: TopologicalMap, gateway: Gateway) -> tuple[Any, ...]:
+    """What is seen at a gateway: the slots of the others clockwise of it, the landmarks, and which
+    of them are on one path, if that is told."""
+    landmarks = world.landmarks.get(gateway[0], frozenset())
+    return world.view(gateway), landmarks, world.pairs(gateway)
+
+
+def classes(world: TopologicalMap, looks: Mapping[Gateway, Any]) -> dict[Gateway, int]:
+    """Of each dstate its class: no walk tells two of a class apart by what is seen, ``looks``. The
+    coarsest partition in which equal turns lead from one class to one class; it is refined until
+    it is that. Gateways that are not linked lead nowhere."""
+    number: dict[Any, int] = {}
+    of = {gateway: number.setdefault(seen, len(number)) for gateway, seen in looks.items()}
+    many = len(number)
+    turns = {gateway: sorted(world.view(gateway)) for gateway in of}
+    while True:
+        number = {}
+        finer = {}
+        for (place, slot), known in of.items():
+            ends = [
+                world.links.get((place, (slot + turn) % world.slots)) for turn in turns[place, slot]
+            ]
+            leads = tuple(-1 if end is None else of[end] for end in ends)
+            finer[place, slot] = number.setdefault((known, leads), len(number))
+        if len(number) == many:
+            return of
+        of, many = finer, len(number)
+
+
+def perpendicular(paths: list[list[Gateway]]) -> bool:
+    """Whether no two paths meet twice, and no three make a triangle."""
+    on: dict[Place, list[int]] = {}
+    for number, path in enumerate(paths):
+        for place in {place for place, _ in path}:
+            on.setdefault(place, []).append(number)
+    common = Counter(pair for of in on.values() for pair in combinations(sorted(of), 2))
+    if any(many > 1 for many in common.values()):
+        return False
+    at = {pair: place for place, of in on.items() for pair in combinations(sorted(of), 2)}
+    meets: dict[int, set[int]] = {}
+    for one, other in at:
+        meets.setdefault(one, set()).add(other)
+        meets.setdefault(other, set()).add(one)
+    for (one, other), place in at.items():
+        for third in meets[one] & meets[other]:
+            rest = (at[min(pair), max(pair)] for pair in ((one, third), (other, third)))
+            if {*rest} != {place}:
+                return False
+    return True
