@@ -256,12 +256,12 @@ def test_the_reported_files():
 
 
 def test_a_way_has_its_course(tmp_path):
-    """A way that leaves to the south-east and comes from there; as WKT, and as a list of points, also
-    the other way round; and a loop with a course, which is kept only if that is asked for."""
+    """A way that leaves to the south-east, and comes from there; as WKT, and as a list of points,
+    also the other way round; and a loop with a course, which is kept only if that is asked for."""
     for course in (
-        "LINESTRING (0 0, 50 0, 0 100)",
-        "[[0, 100], [50, 0], [0, 0]]",
-        "linestring(0 0,50 0,0 100)",
+        "LINESTRING (0 0, 50 -60, 60 50, 0 100)",
+        "[[0, 100], [60, 50], [50, -60], [0, 0]]",
+        "linestring(0 0,50 -60,60 50,0 100)",
     ):
         graph = square(nx.Graph)
         graph.remove_edge("a", "b")
