@@ -96,7 +96,7 @@ lint: $(TOOLS)
 	$(BIN)/lint-imports
 
 GENERATE  := $(BIN)/topomap generate
-MANHATTAN := network "$(MAPS)/manhattan.graphml" --slots 4 --north 29 --route tour
+MANHATTAN := world "$(MAPS)/manhattan.graphml" --slots 4 --north 29 --two-way --route tour
 
 bench: $(TOOLS)
 	PYTHONPATH=tests $(BIN)/python -m bench --networks "$(MAPS)" $(BENCH)

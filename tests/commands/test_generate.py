@@ -185,9 +185,9 @@ def test_the_call_in_a_header_makes_the_same_bytes(tmp_path):
         "grid 3 3 --route snake",
         "grid 3 4 --route ESSENNESSWWWNEEENWWWS --name grid-3x4-paper",
         "grid 4 4 --route snake",
-        "network MAP --slots 4 --north 29 --route tour --steps 20",
-        "network MAP --slots 4 --north 29 --route tour --steps 40 --signs 0.3",
-        "network MAP --slots 4 --north 29 --route tour --signs 0.3",
+        "world MAP --slots 4 --north 29 --two-way --route tour --steps 20",
+        "world MAP --slots 4 --north 29 --two-way --route tour --steps 40 --signs 0.3",
+        "world MAP --slots 4 --north 29 --two-way --route tour --signs 0.3",
     ],
 )
 def test_committed_instances_are_as_generated(arguments):

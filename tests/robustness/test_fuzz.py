@@ -167,11 +167,15 @@ def journal():
         return Path(f"{file}.part").read_text()
 
 
+COURSES = "", "LINESTRING (0 0, 4 5, 0 9)", "[[0, 0], [4, 5], [0, 9]]"
+
+
 def network(draw):
     graph = draw.choice([nx.Graph, nx.MultiDiGraph])(crs="epsg:32618")
     for name, east, north in (("a", 0, 0), ("b", 0, 9), ("c", 9, 9), ("d", 9, 0)):
         graph.add_node(name, x=float(east), y=float(north), lanes="2", oneway=True)
-    graph.add_edges_from(["ab", "bc", "cd", "da"], length=9.5)
+    graph.add_edges_from(["ab", "bc", "cd", "da"], length=9.5, geometry=draw.choice(COURSES))
+    graph.add_edges_from(["ba", "cb", "dc", "ad"] if graph.is_directed() else [], length=9.5)
     return "\n".join(nx.generate_graphml(graph))
 
 
@@ -212,7 +216,8 @@ READERS = {  # the calls that read a file, and how to spoil it
     "network": (
         [
             "generate network FILE --route tour -o out",
-            "generate network FILE --slots 8 --north 20 --route walk --steps 3 --signs 0.5 -o out",
+            "generate world FILE --slots 8 --north 20 --straight 30 --two-way --loops --route walk "
+            "--steps 3 --signs 0.5 -o out",
         ],
         EDITS,
     ),
