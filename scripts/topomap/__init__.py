@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     from topomap.api.simulate import simulate
     from topomap.api.solve import solve
     from topomap.api.validate import validate
+    from topomap.api.world import world
     from topomap.model.experience import Experience
     from topomap.runtime.errors import InputError
 
@@ -50,6 +51,7 @@ _WHERE = {
     "simulate": "api.simulate",
     "solve": "api.solve",
     "validate": "api.validate",
+    "world": "api.world",
 }
 __all__ = [
     "Answer",
@@ -69,6 +71,7 @@ __all__ = [
     "simulate",
     "solve",
     "validate",
+    "world",
 ]
 
 if not TYPE_CHECKING:  # a checker of types would take any name for one of these

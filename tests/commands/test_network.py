@@ -6,6 +6,7 @@ import random
 
 import networkx as nx
 import pytest
+import topomap
 from conftest import SHARED, TRIED, run
 from oracles.worlds import random_world
 from topomap.model.facts import parse
@@ -366,3 +367,14 @@ def test_a_census_says_what_a_world_is(tmp_path):
     made = run("topomap", "generate", "world", file, "--route", "tour", "--json")
     assert json.loads(made.stdout)["world"]["places"] == 4
     assert "4 places, 4 ways" in run("topomap", "generate", "world", file, "--route", "tour").stderr
+
+
+def test_worlds_are_read_in_python_too(tmp_path):
+    file = write(tmp_path, square())
+    made = topomap.world(file, slots=8, north=45)
+    assert made.map.stars["a"] == {1, 7}
+    assert topomap.generate(made, route="tour").experience.steps == 4
+    with pytest.raises(ValueError, match="north='up'"):
+        topomap.world(file, north="up")
+    with pytest.raises(TypeError, match="path"):
+        topomap.world(7)

@@ -55,6 +55,16 @@ def seconds(name: str, value: Any) -> float | None:
     return number
 
 
+def number_if_given(name: str, value: Any, least: float = -LARGEST) -> float | None:
+    """A finite number, not below the least one; None, where it was not given, stays None."""
+    if value is None:
+        return None
+    number = _real(value)
+    if not least <= number <= LARGEST:
+        raise ValueError(f"{said(name, value)}: it must be a number from {least:g} to {LARGEST}")
+    return number
+
+
 def share(name: str, value: Any) -> float:
     """A share of something, from 0 to 1."""
     number = _real(value)
