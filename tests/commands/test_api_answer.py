@@ -411,7 +411,7 @@ def test_a_stream_keeps_nothing_and_the_answer_says_so(seen, some, finder):
 def test_a_map_is_drawn_once(seen, some, finder, monkeypatch):
     finder.found = some
     drawn = []
-    monkeypatch.setattr("topomap.api.draw.svg", lambda scene: drawn.append(scene) or "<svg/>")
+    monkeypatch.setattr("topomap.api.draw.svg", lambda scene, late: drawn.append(scene) or "<svg/>")
     one = topomap.solve(seen)[0]
     assert [one._repr_svg_(), one._repr_svg_()] == ["<svg/>", "<svg/>"]
     assert len(drawn) == 1

@@ -82,7 +82,7 @@ def _take(counted: Iterator[Row], rows: list[Row], many: int, noted: Noted) -> N
     """Take in the columns as they are counted, and keep them in order."""
     for row in counted:
         rows.append(row)
-        rows.sort(key=lambda row: (row["environment"], row["planarity"], row["way"] == "merging"))
+        rows.sort(key=lambda row: (row["environment"], row["planarity"], row.get("way", "")))
         noted(len(rows), many)
 
 

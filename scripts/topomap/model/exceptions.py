@@ -6,6 +6,7 @@ its only place, as in ``4.1``.
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Any
 
 from topomap.model.experience import DState, Experience
@@ -43,10 +44,13 @@ class NamedException:
 def exceptions_of(experience: Experience, at: Sequence[DState]) -> list[NamedException]:
     """The exceptions of the map of a hypothesis, given by its dstate after each step."""
     steps: dict[DState, int] = {}
-    for step, (turn, (place, slot)) in enumerate(zip(experience.turns, at, strict=False), 1):
+    travels = zip(
+        experience.turns, pairwise(at), strict=False
+    )  # of a beginning, there are more turns
+    for step, (turn, (before, arrival)) in enumerate(travels, 1):
         if turn is not None:
-            steps.setdefault(experience.way_out(step, (place, slot)), step)
-            steps.setdefault(at[step], step)
+            steps.setdefault(experience.way_out(step, before), step)
+            steps.setdefault(arrival, step)
     return named_exceptions(experience.map_of(tuple(at)), steps)
 
 
