@@ -234,7 +234,7 @@ def _frame(rows: Sequence[Row]) -> str:
             for text in row.cells.get(name, ()):
                 kinds.setdefault(text.upper() in LETTERS, (row, text))
         if len(kinds) == 2:
-            row, text = max(kinds.values(), key=lambda kind: kind[0].step)
+            row, text = [*kinds.values()][-1]
             raise row.fault(
                 f"{quoted(text)}: compass letters and degrees are mixed; --frame north takes both, "
                 "with degrees clockwise from north"
