@@ -342,7 +342,7 @@ def test_the_truth_is_among_the_maps_of_a_rough_log(read):
         maps = {one.at for one in topomap.solve(fine)}
         assert in_slots(seen, fine, truth) in maps
         found += len(maps)
-    assert found > 15
+    assert found > 10
 
 
 def test_what_is_chosen_is_told(read):

@@ -491,7 +491,8 @@ def _said(said: Sequence[str], options: Options) -> str | None:
         return None
     names = [name for name in ("slots", "tolerance") if getattr(options, name) is None]
     names += ["straight"] * any("one path" in one for one in said)
-    choose = " and ".join(f"--{name}" for name in names)
+    *most, last = (f"--{name}" for name in names)
+    choose = f"{', '.join(most)} and {last}" if most else last
     return f"{'; '.join(said)} ({choose} choose{'s' * (len(names) == 1)} otherwise)"
 
 
