@@ -90,13 +90,13 @@ def run(args: argparse.Namespace) -> int:
         straight=args.straight,
         unit=args.unit,
     )
+    if args.output or not args.json:
+        with output(args.output) as file:
+            file.write(log.text())
     for warning in log.warnings:
         say(f"warning: {warning}")
     if log.chosen:
         say(log.chosen)
-    if args.output or not args.json:
-        with output(args.output) as file:
-            file.write(log.text())
     if args.json:
         print(formats.line({**log.document(), "file": args.output}), end="")
     return DONE
