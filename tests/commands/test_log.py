@@ -377,6 +377,31 @@ def test_a_place_that_changed_is_warned_of(read):
     assert not read("exits,taken\n0 90,0\n0,0\n0 90,").warnings
 
 
+@pytest.mark.parametrize(
+    "text",
+    [
+        'exits,taken\n"0,90",90\n"0, 180",\n',
+        "exits;taken\n0|90;90\n0 / 180\n",
+        "exits\ttaken\r0\u00b0 90\u00b0\t90\u00b0\r0 -180.0\r",
+        '{"exits": "0,90", "taken": 90}\n{"exits": ["0", 180], "taken": null, "look": false}',
+    ],
+)
+def test_how_bearings_may_be_written(read, text):
+    facts = "slots(4).\nview(0,0). view(0,3).\nturn(1,0). view(1,0). view(1,2).\n"
+    assert read(text).experience.facts() == facts
+
+
+def test_bearings_from_ahead(read):
+    """The exit of arrival is the one nearest to 180, up to 10 degrees beside it, and the others
+    count from it."""
+    back = "exits,taken\n0,0\n189.5 99.5 9.5,9.5\n170.5,"
+    assert read(back, facing="ahead").experience.facts() == (
+        "slots(4).\nview(0,0).\nturn(1,0). view(1,0). view(1,2). view(1,3).\n"
+        "turn(2,2). view(2,0).\n"
+    )
+    assert "is within 10 degrees of 180" in faults(read, back.replace("170", "169"), facing="ahead")
+
+
 def test_looks_and_starts(read):
     """A start that is left after a second look stands at the exit that is then taken."""
     log = read("exits,taken,look,start\n10 100,,,\n101 11,101,yes,\n0,,,\n180 0,0,,yes\n0,,,\n")
