@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from topomap.api.explore import explore
     from topomap.api.follow import follow
     from topomap.api.generate import generate
+    from topomap.api.log import read_log
     from topomap.api.maps import Map
     from topomap.api.read import read
     from topomap.api.simulate import simulate
@@ -48,6 +49,7 @@ _WHERE = {
     "follow": "api.follow",
     "generate": "api.generate",
     "read": "api.read",
+    "read_log": "api.log",
     "simulate": "api.simulate",
     "solve": "api.solve",
     "validate": "api.validate",
@@ -68,6 +70,7 @@ __all__ = [
     "follow",
     "generate",
     "read",
+    "read_log",
     "simulate",
     "solve",
     "validate",

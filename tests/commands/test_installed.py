@@ -22,7 +22,8 @@ CALLS = {  # of each subcommand, in this order, as some read what an earlier one
     "path": ["path", "instances"],
     "clingo": ["clingo", "{encodings}/topomap.lp", SNAKE, "0", "-q"],
     "generate": ["generate", "grid", "2", "3", "--route", "snake", "-o", "grid.lp"],
-    "validate": ["validate", SNAKE, "grid.lp"],
+    "log": ["log", "{log}", "-o", "log.lp"],
+    "validate": ["validate", SNAKE, "grid.lp", "log.lp"],
     "solve": ["solve", SNAKE, "--optimal", "--planar", "--json", "-o", "maps.json"],
     "ask": ["ask", SNAKE, "same(1,7)"],
     "explain": ["explain", SNAKE, "same(1,7)"],
@@ -42,6 +43,7 @@ CALLS = {  # of each subcommand, in this order, as some read what an earlier one
     "export": ["export", "maps.json", "--format", "graphml", "-o", "map.graphml"],
     "import": ["import", "map.graphml"],
 }
+LOG = ROOT / "tests/files/courtyard.csv"
 STATUS = {"clingo": 30, "explore": 1, "table": 3}
 DRAWN = {"draw", "show", "report", "figures", "export"}  # by the extra
 
@@ -87,7 +89,7 @@ def every_subcommand(programs, folder):
     folder.mkdir()
     place = json.loads(run(programs, folder, "topomap", "path", "--json").stdout)
     for name, call in CALLS.items():
-        done = run(programs, folder, "topomap", *(word.format(**place) for word in call))
+        done = run(programs, folder, "topomap", *(word.format(**place, log=LOG) for word in call))
         assert done.returncode == STATUS.get(name, 0), (name, done.stderr)
         assert "Traceback" not in done.stderr, name
     return {path.name for path in folder.iterdir()}
@@ -169,7 +171,7 @@ def test_from_nothing(built, tmp_path):
     folder.mkdir()
     place = json.loads(run(programs, folder, "topomap", "path", "--json").stdout)
     for name, call in CALLS.items():
-        done = run(programs, folder, "topomap", *(word.format(**place) for word in call))
+        done = run(programs, folder, "topomap", *(word.format(**place, log=LOG) for word in call))
         if name in DRAWN:
             assert (done.returncode, done.stderr.count("\n")) == (2, 1), name
             assert "pip install '.[draw]'" in done.stderr, name

@@ -29,7 +29,7 @@ QUICK = "--timeout", "0.1"
 AT_ONCE = "--timeout", "0.001"
 # Subcommands that look for no map within a limit, and so have nothing to leave open.
 UNLIMITED = {
-    *("generate", "family", "import", "validate", "path"),  # they do not search
+    *("generate", "family", "import", "log", "validate", "path"),  # they do not search
     "clingo",  # it is clingo's own word
     "figures",  # it draws all or, when it is interrupted, says so (test_draw)
 }

@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from topomap.questions.proofs import Checked
     from topomap.worlds.environment import Environment
     from topomap.worlds.instance import Instance
+    from topomap.worlds.logs import Log
 
 _WHERE = {
     "Candidates": "questions.candidates",
@@ -35,6 +36,7 @@ _WHERE = {
     "FollowerStatus": "api.follow",
     "Instance": "worlds.instance",
     "Judged": "documents.verdicts",
+    "Log": "worlds.logs",
     "NextWalk": "api.explore",
     "Parts": "api.parts",
     "Reply": "model.reply",
@@ -53,6 +55,7 @@ __all__ = [
     "FollowerStatus",
     "Instance",
     "Judged",
+    "Log",
     "NextWalk",
     "Parts",
     "Reply",

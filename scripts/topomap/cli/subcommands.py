@@ -2,6 +2,10 @@
 
 SUBCOMMANDS = {
     "generate": "explore an environment and write what is seen as an instance",
+    "log": (
+        "read a log that was noted as a table, CSV, or as JSON lines, with bearings in degrees or "
+        "compass letters, and write it as an instance"
+    ),
     "validate": (
         "report all that is wrong with instances, and what looks like a mistake, without "
         "solving anything; the status is 2 if one of them has a fault (a warning is not a "

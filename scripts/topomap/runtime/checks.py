@@ -81,6 +81,23 @@ def percent(name: str, value: Any) -> float:
     return number
 
 
+def degrees(name: str, value: Any) -> float | None:
+    """An angle in degrees, 0 to 180; None, where it was not given, stays None."""
+    number = 0.0 if value is None else _real(value)
+    if not 0 <= number <= 180:
+        raise ValueError(f"{said(name, value)}: it must be a number of degrees, from 0 to 180")
+    return None if value is None else number
+
+
+def positive(name: str, value: Any) -> float | None:
+    """A number above 0, which is neither tiny nor without end; None, where it was not given, stays
+    None."""
+    number = 1.0 if value is None else _real(value)
+    if not 1e-9 <= number <= LARGEST:
+        raise ValueError(f"{said(name, value)}: it must be a number from 1e-09 to {LARGEST}")
+    return None if value is None else number
+
+
 def flag(name: str, value: Any) -> bool:
     """True or False, and nothing else that Python takes for one of them."""
     if not isinstance(value, bool):

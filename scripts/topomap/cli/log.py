@@ -1,0 +1,102 @@
+"""The subcommand ``log``."""
+
+import argparse
+from typing import Any
+
+from topomap.cli.arguments import command, number, number_or_auto
+from topomap.runtime import formats
+from topomap.runtime.errors import say
+from topomap.runtime.files import output
+from topomap.runtime.limits import LARGEST
+from topomap.runtime.status import DONE
+
+
+def add(group: Any) -> None:
+    """The parser of ``topomap log``."""
+    made = command(
+        group,
+        "log",
+        """\
+  topomap log walk.csv -o walk.lp
+  topomap log walk.jsonl --frame north --straight-ways 20 -o walk.lp
+  printf 'exits,taken\\nN,N\\nS E,\\n' | topomap log - --straight-ways 0""",
+    )
+    add = made.add_argument
+    add("file", metavar="FILE", help="CSV or JSON lines, a row for each visit; - is standard input")
+    add(
+        "--slots",
+        type=number_or_auto(int, 2),
+        metavar="K",
+        help="directions at a place, even; auto: the fewest that fit the bearings, else 360 "
+        "(default: auto)",
+    )
+    add(
+        "--tolerance",
+        type=number_or_auto(int, 0),
+        metavar="N",
+        help="bearings may be wrong by N slots; auto: 0 if they fit the slots, else measured where "
+        "the log surely comes to a place again (default: auto)",
+    )
+    add(
+        "--frame",
+        choices=("arrival", "north"),
+        help="where bearings count from: the exit by which one arrived, or north (default: north "
+        "if there are compass letters, else arrival)",
+    )
+    add(
+        "--facing",
+        choices=("back", "ahead"),
+        default="back",
+        help="where bearing 0 is, if bearings count from the arrival: at the way back, or ahead, "
+        "which puts the way back at 180 (default: back)",
+    )
+    add(
+        "--straight-ways",
+        type=number(float, 0, 180),
+        metavar="DEGREES",
+        help="if bearings count from north: a way bends by at most so many degrees from one place "
+        "to the next, so the exit by which one arrived is known where the log does not tell it",
+    )
+    add(
+        "--straight",
+        type=number(float, 0, 180),
+        metavar="DEGREES",
+        help="two exits of a place are on one path if each is the one most nearly opposite to the "
+        "other, and they are off by at most so many degrees (default: those in opposite slots; "
+        "if no slots fit the bearings, chosen)",
+    )
+    add(
+        "--unit",
+        type=number(float, 1e-9, LARGEST),
+        metavar="U",
+        help="how much of the lengths is one unit of the instance (default: 1, or 0.01 if some are "
+        "fractions)",
+    )
+    add("--json", action="store_true", help="print a summary as JSON")
+    add("-o", "--output", metavar="FILE", help="file to write (default: stdout)")
+
+
+def run(args: argparse.Namespace) -> int:
+    """Read a log, and write it as an instance."""
+    from topomap.api.log import read_log
+
+    log = read_log(
+        args.file,
+        slots=args.slots,
+        tolerance=args.tolerance,
+        frame=args.frame,
+        facing=args.facing,
+        straight_ways=args.straight_ways,
+        straight=args.straight,
+        unit=args.unit,
+    )
+    if args.output or not args.json:
+        with output(args.output) as file:
+            file.write(log.text())
+    for warning in log.warnings:
+        say(f"warning: {warning}")
+    if log.chosen:
+        say(log.chosen)
+    if args.json:
+        print(formats.line({**log.document(), "file": args.output}), end="")
+    return DONE
