@@ -361,12 +361,14 @@ class _Reader:
         sign = 1.0
         if text[:1] and text[0] in signs["minus"] + signs["plus"]:
             sign, text = (-1.0 if text[0] in signs["minus"] else 1.0), text[1:]
-        for decimal in signs["decimal"]:
+        decimals = [c for c in text if c in signs["decimal"]]
+        strange = "." in text and "." not in decimals
+        for decimal in decimals:
             text = text.replace(decimal, ".")
         if (
             word.quoted
             or not re.fullmatch(r"[0-9]+\.?[0-9]*|\.[0-9]+", text)
-            or ("." in text and not signs["decimal"])
+            or strange
             or float(text) > LARGEST
         ):
             told = printable(word.text)[:40]
@@ -541,7 +543,7 @@ class _Reader:
         if style not in READINGS:
             known = " and ".join(READINGS)
             raise self.fault(f"data style {printable(style)[:40]} is not read, only {known} are")
-        order = []
+        order: list[str] = []
         for word in words[1:]:
             name = word.text.lower()
             if name in ("newline", "station", "direction"):

@@ -17,7 +17,7 @@ from topomap.runtime.errors import InputError, printable
 from topomap.runtime.limits import LARGEST, MOST_PLACES
 from topomap.worlds.courses import exit_towards, point_along
 from topomap.worlds.plan import Exit, Plan, Point, Reading, Way
-from topomap.worlds.readers.surveys import Leg, Survey, survey_of
+from topomap.worlds.surveys import Leg, Survey, survey_of
 
 STEEP = 80.0  # degrees; a steeper leg at the end of a way has no direction of its own
 SHOWN = 10  # stations that a message names
@@ -27,9 +27,8 @@ def fits(name: str, content: bytes) -> bool:
     """Whether a file is a survey: by its name, or if it begins with a command of Survex."""
     if name.lower().endswith(".svx"):
         return True
-    told = re.sub(
-        rb"(?m)^\s*(;.*)?$\n?", b"", content[:4000].removeprefix(b"\xef\xbb\xbf")
-    ).lstrip()
+    start = content[:4000].removeprefix(b"\xef\xbb\xbf")
+    told = re.sub(rb"(?m)^\s*;.*$", b"", start).lstrip()
     commands = rb"\*(begin|data|fix|equate|include|title|units|calibrate|cs|case|require|flags)\b"
     return bool(re.match(commands, told, re.IGNORECASE))
 
@@ -198,12 +197,8 @@ def _without_duplicates(legs: list[Leg]) -> tuple[list[Leg], int]:
         at[leg.of].add(leg.number)
         at[leg.to].add(leg.number)
     # What is left of a chain of duplicates, where one of its legs is gone, is no dead end.
-    cut = {
-        end
-        for leg in legs
-        if leg.duplicate and leg.number not in by_number
-        for end in (leg.of, leg.to)
-    }
+    gone = [leg for leg in legs if leg.number not in by_number]
+    cut = {end for leg in gone for end in (leg.of, leg.to)}
     waiting = [station for station in cut if len(at[station]) == 1]
     while waiting:
         station = waiting.pop()
