@@ -28,11 +28,12 @@ Line = Numbers  # the points of a line, one a row
 SHARP = 45.0  # degrees by which a line turns at a corner
 SPOT = 9  # pixels of a spot that is noise, however wide corridors are
 MOST_OF_LINES = 10**6  # pixels of a skeleton
+MOST_WORK = 4 * 10**9  # pixels, times how far the middle is from the wall: some ten seconds
 ROUND = ndimage.generate_binary_structure(2, 2)  # free pixels also touch at their corners
 
 
 class TooLarge(Exception):
-    """A skeleton that is too large."""
+    """A raster that would take too long; the message says why."""
 
 
 @dataclass
@@ -110,7 +111,12 @@ def net_of(free: Grid, radius: float | None = None, loops: bool = False) -> Net:
     """The places and ways of free space. ``radius`` is how far along a line two junctions are apart
     at most to be one place; None: if their largest free circles touch. ``loops`` tells whether
     lines back to their own place are kept. Raises TooLarge."""
-    clean, noise, spots = _clean(np.pad(free, 2))
+    used = [np.flatnonzero(free.any(axis=axis)) for axis in (1, 0)]
+    if not used[0].size:
+        return Net()
+    (top, bottom), (left, right) = ((int(some[0]), int(some[-1]) + 1) for some in used)
+    clean, noise, spots = _clean(np.pad(free[top:bottom, left:right], 2))
+    corner = np.array([top - 2, left - 2])
     net = Net(noise=noise, spots=spots)
     if clean.any():
         room = ndimage.distance_transform_edt(clean)
@@ -128,9 +134,9 @@ def net_of(free: Grid, radius: float | None = None, loops: bool = False) -> Net:
         net.lone += 1
         net.drop(place)
     for place, point in net.where.items():
-        net.where[place] = point - 2  # the rim that was put round
+        net.where[place] = point + corner
     for number, (one, other, line) in net.lines.items():
-        net.lines[number] = one, other, line - 2
+        net.lines[number] = one, other, line + corner
     return net
 
 
@@ -141,9 +147,12 @@ def _clean(free: Grid) -> tuple[Grid, int, int]:
     clean: Grid = around >= 5
     if not clean.any():
         return clean, int(free.sum()), 0
-    # What is thin in a noisy raster is no corridor, so the width is that of most of the line.
+    # The corridors are as wide as it is far from wall to wall at most points of their middle.
     room = ndimage.distance_transform_edt(clean)
-    width = 2 * float(np.median(room[_skeleton(clean)]))
+    if (far := float(room.max())) * clean.size > MOST_WORK:
+        raise TooLarge(f"free space {2 * far:.0f} pixels wide, among {clean.size:,} pixels")
+    width = 2 * float(np.median(room[clean & (room >= ndimage.maximum_filter(room, 3))]))
+    del room
     spots = 0
     for grid, touching, most in (
         (~clean, None, max(SPOT, (width / 3) ** 2)),
@@ -152,7 +161,7 @@ def _clean(free: Grid) -> tuple[Grid, int, int]:
         labels, _ = ndimage.label(grid, touching)
         sizes = np.bincount(labels.ravel())
         small = sizes <= most
-        small[0] = False
+        small[[0, labels[0, 0]]] = False  # the rim is what is round all free space
         spots += int(small.sum())
         clean ^= small[labels]
     return clean, int((clean != free).sum()), spots
@@ -167,7 +176,7 @@ def _trace(net: Net, skeleton: Grid, room: Numbers) -> None:
     """Put the lines of a skeleton into the net."""
     pixels = np.argwhere(skeleton)
     if len(pixels) > MOST_OF_LINES:
-        raise TooLarge
+        raise TooLarge(f"lines of {len(pixels):,} pixels in the middle of free space")
     number = np.full(skeleton.shape, -1, np.int32)
     number[skeleton] = np.arange(len(pixels))
     near: list[list[int]] = [[] for _ in pixels]

@@ -66,11 +66,9 @@ def read(file: str, content: bytes, reading: Reading) -> Plan:
     radius = None if reading.radius is None else reading.radius / resolution
     try:
         net = skeletons.net_of(grid, radius, reading.loops)
-    except skeletons.TooLarge:
-        most = skeletons.MOST_OF_LINES
-        raise InputError(
-            f"{file}: the lines of its free space are longer than {most} pixels"
-        ) from None
+    except skeletons.TooLarge as error:
+        said = f"the image takes too much work ({error}); make it smaller"
+        raise InputError(f"{file}: {said}") from None
     if len(net.where) > MOST_PLACES:
         raise InputError(f"{file}: more than {MOST_PLACES} places")
     if not net.lines:

@@ -37,8 +37,12 @@ def read(file: str, content: bytes, reading: Reading) -> Plan:
     """The plan in a survey. Raises InputError on bad input."""
     survey = survey_of(file, content)
     net = _Net(file, survey)
-    ways, loops, rings = [], 0, 0
+    ways, upright, loops, rings = [], [], 0, 0
     for chain in net.chains():
+        dead = [end for end in chain.ends if len(net.at[end]) == 1]
+        if dead and chain.upright:
+            upright.append(net.names[dead[-1]])
+            continue
         if chain.ends[0] == chain.ends[1] and not reading.loops:
             loops += 1
             rings += len(net.at[chain.ends[0]]) == 2
@@ -58,6 +62,9 @@ def read(file: str, content: bytes, reading: Reading) -> Plan:
     ]
     told = [*survey.told(), *net.told]
     told += [f"{file}: {what}: {number}" for what, number in left if number]
+    if upright:
+        what = "ways straight up or down to a dead end left out, as they have no direction"
+        told.append(f"{file}: {what}: {_listed(upright)}")
     points = {
         net.names[station]: point
         for station, point in net.points().items()
@@ -75,6 +82,11 @@ class _Chain:
 
     ends: tuple[int, int]
     legs: list[tuple[Leg, bool]] = field(default_factory=list)
+
+    @property
+    def upright(self) -> bool:
+        """Whether all its legs are steep."""
+        return all(abs(leg.slope) > STEEP for leg, _ in self.legs)
 
 
 class _Net:
