@@ -29,7 +29,7 @@ REQUIRED = "image", "resolution", "origin", "negate", "occupied_thresh", "free_t
 
 def fits(name: str, content: bytes) -> bool:
     """Whether a file is the YAML file of a map."""
-    start = content[:MOST_YAML]
+    start = content[: 2 * MOST_YAML]
     return start.lstrip()[:1] != b"<" and all(
         re.search(rb"(?m)(^|[{,])[ \t]*[\"']?%s[\"']?[ \t]*:" % key, start)
         for key in (b"image", b"resolution")

@@ -20,6 +20,7 @@ from topomap.worlds.plan import Exit, Plan, Point, Reading, Way
 from topomap.worlds.surveys import Leg, Survey, survey_of
 
 STEEP = 80.0  # degrees; a steeper leg at the end of a way has no direction of its own
+NEAR = 1e-6  # metres, within which two points are one
 SHOWN = 10  # stations that a message names
 
 
@@ -263,7 +264,7 @@ def _exit(
         long = sum(math.dist(*pair) for pair in pairwise(line))
         along = min(along, long / 3)
     there = point_along(line, along)
-    if math.dist(there, line[0]) == 0:
+    if math.dist(there, line[0]) < NEAR:
         raise InputError(
             f"{file}: {_between(chain, names)} is at {printable(names[station])} again "
             f"{along:g} metres along, so it has no direction there"
