@@ -496,7 +496,7 @@ def test_what_the_yaml_file_says(tmp_path):
         ({"image": "/etc/passwd"}, "outside of the folder"),
         ({"image": "../floor.pgm"}, "outside of the folder"),
         ({"image": "link.pgm"}, "outside of the folder"),
-        ({"image": "none.pgm"}, "there is no file none.pgm"),
+        ({"image": "none.pgm"}, "none.pgm is not there"),
         ({"image": "floor.yaml"}, "not a PNG or PGM image"),
         ({"image": '"a\\0b"'}, "is not the name of a file"),
         ({"image": "half.pgm"}, "half.pgm"),

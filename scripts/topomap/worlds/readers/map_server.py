@@ -60,6 +60,7 @@ def read(file: str, content: bytes, reading: Reading) -> Plan:
     mode = told.get("mode", MODES[0])
     if mode not in MODES:
         raise InputError(f"{file}: mode: it must be one of: {', '.join(MODES)}")
+    image = printable(str(told["image"]))[:200]
     grid, rows = _free_space(file, str(told["image"]), negate, free, mode)
     if max(*grid.shape, rows) * resolution > LARGEST:
         raise InputError(f"{file}: resolution: the map is wider than {LARGEST} metres")
@@ -67,15 +68,13 @@ def read(file: str, content: bytes, reading: Reading) -> Plan:
     try:
         net = skeletons.net_of(grid, radius, reading.loops)
     except skeletons.TooLarge as error:
-        said = f"the image takes too much work ({error}); make it smaller"
+        said = f"the image {image} takes too much work ({error}); make it smaller"
         raise InputError(f"{file}: {said}") from None
     if len(net.where) > MOST_PLACES:
         raise InputError(f"{file}: more than {MOST_PLACES} places")
     if not net.lines:
-        raise InputError(
-            f"{file}: no way between two places is found in its free space "
-            f"({int(grid.sum())} pixels)"
-        )
+        said = f"no way between two places is found in the free space of the image {image}"
+        raise InputError(f"{file}: {said} ({int(grid.sum())} pixels)")
 
     def flat(point: Any) -> Point:
         """A point of the image in the map, in metres east and north."""
@@ -157,7 +156,7 @@ def _free_space(file: str, image: str, negate: bool, free: float, mode: str) -> 
     from PIL import Image
 
     path = _beside(file, image)
-    name = f"{file}: the image {printable(image)}"
+    name = f"{file}: the image {printable(image)[:200]}"
     large = f"{name} has more than {MOST_PIXELS:,} pixels"
     try:
         with warnings.catch_warnings():
@@ -207,19 +206,18 @@ def _beside(file: str, image: str) -> Path:
     """The path of an image in the folder of a file, or below."""
     if file == "-":
         raise InputError(f"{file}: its image is in its folder, so it must be given by its name")
+    said = f"{file}: image: {printable(image)[:200]}"
     try:
         folder = Path(file).parent.resolve()
         path = (folder / image).resolve()
         inside = path.is_relative_to(folder)
         regular = path.is_file()
     except (OSError, ValueError, RuntimeError):
-        raise InputError(
-            f"{file}: image: {printable(image)[:200]} is not the name of a file"
-        ) from None
+        raise InputError(f"{said} is not the name of a file") from None
     if not inside:
-        raise InputError(f"{file}: image: {printable(image)} is outside of the folder of this file")
+        raise InputError(f"{said} is outside of the folder of this file")
     if not regular:
-        raise InputError(f"{file}: image: there is no file {printable(image)}")
+        raise InputError(f"{said} is not there, or is no file")
     return path
 
 
