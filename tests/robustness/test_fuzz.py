@@ -1,6 +1,6 @@
-"""Random bad input to every reader: instances, maps, true maps, networks, families, journals,
-routes and command lines. Each is refused in one line with status 2, or answered; nothing hangs,
-shows a traceback or leaves a part of a file.
+"""Random bad input to every reader: instances, maps, true maps, networks, surveys, floor plans,
+families, journals, routes and command lines. Each is refused in one line with status 2, or
+answered; nothing hangs, shows a traceback or leaves a part of a file.
 
 A new reader is a line in READERS; a new subcommand is found by itself.
 """
@@ -107,6 +107,12 @@ def made(draw, kind):
         return json.dumps({"maps": [{"at": [[t, *dstate] for t, dstate in enumerate(at)]}]})
     if kind == "network":
         return network(draw)
+    if kind == "survey":
+        return survey(draw)
+    if kind == "map":
+        return floor("floor.pgm")
+    if kind == "image":
+        return crossing()
     if kind == "proof":
         return proof()
     if kind == "journal":
@@ -179,6 +185,47 @@ def network(draw):
     return "\n".join(nx.generate_graphml(graph))
 
 
+def survey(draw):
+    """A cave of two blocks and a dead end."""
+    form = draw.choice(["from to tape compass clino", "from to tape compass clino ignoreall"])
+    return f"""*begin cave
+*units tape feet
+*calibrate declination {draw.randint(-5, 5)} ; degrees
+*data normal {form}
+1 2 100 0 0
+2 3 100 90 5
+3 4 100 180 -5
+4 1 100 270 0
+1 5 50 {draw.choice(["80 0", "- down"])}
+5 6 50 200 0
+*equate 6 7
+*fix 1 100 200 30
+*flags splay
+4 wall 10 200 0
+*end cave
+"""
+
+
+def floor(image):
+    """The YAML file of a map."""
+    return f"""image: {image}
+resolution: 0.1
+origin: [-1.0, 2.0, 0.0]
+negate: 0
+occupied_thresh: 0.65
+free_thresh: 0.2
+"""
+
+
+def crossing():
+    """The image of two corridors."""
+    rows = [
+        " ".join("255" if abs(x - 20) < 4 or abs(y - 20) < 4 else "0" for x in range(41))
+        for y in range(41)
+    ]
+    return "\n".join(["P2", "41 41", "255", *rows, ""])
+
+
 EDITS = on_bytes, on_tokens, on_lines
 GRID = instance(grid(2, 2), "snake").text()
 THREE = instance(grid(3, 3), "snake").text()
@@ -221,6 +268,15 @@ READERS = {  # the calls that read a file, and how to spoil it
         ],
         EDITS,
     ),
+    "survey": (
+        [
+            "generate world FILE --route tour -o out",
+            "generate world FILE --loops --along 20 --route walk --steps 3 -o out",
+        ],
+        EDITS,
+    ),
+    "map": (["generate world FILE --route tour -o out"], EDITS),
+    "image": (["generate world floor.yaml --radius 1 --route tour -o out"], EDITS),
     "graphml": (["import FILE -o out"], EDITS),
     "node-link": (["import FILE -o out"], (*EDITS, on_values)),
     "family": (["family FILE -d folder"], EDITS),
@@ -242,6 +298,8 @@ def feed(tmp_path, monkeypatch):
     (tmp_path / "good.lp").write_text(GRID)
     (tmp_path / "three.lp").write_text(THREE)
     (tmp_path / "net.graphml").write_text(network(random.Random(0)))
+    (tmp_path / "floor.pgm").write_text(crossing())
+    (tmp_path / "floor.yaml").write_text(floor("FILE"))
     (tmp_path / "bad.lp").write_text("slots(5).")
     (tmp_path / "dir").mkdir()
 

@@ -7,6 +7,7 @@ from topomap.runtime.errors import InputError
 MODULES = {
     "draw": ("jinja2", "matplotlib", "numpy", "scipy"),
     "dask": ("distributed",),
+    "floorplan": ("PIL", "numpy", "scipy", "skimage", "yaml"),
 }
 
 

@@ -5,14 +5,14 @@ is nearest to its bearing. No two exits of a place may have one slot.
 """
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from itertools import pairwise
 from typing import NamedTuple
 
 from topomap.model.experience import MOST_SLOTS
 from topomap.model.topology import Gateway, Place, TopologicalMap, label
 from topomap.runtime.errors import InputError
-from topomap.worlds.plan import Exit, Plan, Way
+from topomap.worlds.plan import Exit, Plan, Point, Way
 
 FEWEST, MOST = 4, 360  # slots that are tried; with four, straight on and a turn can be told apart
 SHOWN = 20  # clashes that are listed
@@ -210,3 +210,17 @@ def world_of(plan: Plan, at: Layout, straight: float | None = None) -> Topologic
 def exit_towards(place: Place, here: tuple[float, float], there: tuple[float, float]) -> Exit:
     """The exit of a place at a point, in the direction of another point of the plane."""
     return Exit(place, math.degrees(math.atan2(there[0] - here[0], there[1] - here[1])))
+
+
+def point_along(course: Sequence[Point], far: float) -> Point:
+    """The point so far along a way, or its other end if it is not so long; of a way back to the
+    same place, at most a third of it."""
+    if course[0] == course[-1]:
+        far = min(far, sum(math.dist(*pair) for pair in pairwise(course)) / 3)
+    for one, other in pairwise(course):
+        long = math.dist(one, other)
+        if long >= far > 0:
+            share = far / long
+            return one[0] + share * (other[0] - one[0]), one[1] + share * (other[1] - one[1])
+        far -= long
+    return course[-1]

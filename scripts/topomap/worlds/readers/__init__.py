@@ -13,7 +13,11 @@ from topomap.runtime.errors import InputError
 from topomap.runtime.files import read_bytes
 from topomap.worlds.plan import Plan, Reading
 
-FORMATS = {"graphml": "a street or corridor network in GraphML, as OSMnx writes it"}
+FORMATS = {
+    "graphml": "a street or corridor network in GraphML, as OSMnx writes it",
+    "survex": "a cave survey of Survex (.svx)",
+    "map_server": "a floor plan of map_server of ROS (.yaml, with a PNG or PGM image)",
+}
 
 
 def read(file: str | Path, reading: Reading) -> Plan:

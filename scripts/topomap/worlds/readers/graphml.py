@@ -24,7 +24,7 @@ from topomap.model.topology import Place
 from topomap.runtime import nx
 from topomap.runtime.errors import InputError, printable
 from topomap.runtime.limits import LARGEST
-from topomap.worlds.courses import exit_towards
+from topomap.worlds.courses import exit_towards, point_along
 from topomap.worlds.plan import Plan, Point, Reading, Way
 
 Data = Mapping[str, Any]  # what is told of an edge
@@ -101,7 +101,7 @@ def plan_of(file: str, graph: "nx.Graph[Any]", reading: Reading) -> Plan:
             if all(math.dist(point, here[0]) == 0 for point in here):
                 names = f"{printable(str(one))} and {printable(str(other))}"
                 raise InputError(f"{file}: places {names} are at one point")
-            ends.append(exit_towards(place, here[0], _along(here, reading.along)))
+            ends.append(exit_towards(place, here[0], point_along(here, reading.along)))
         where = [flat(point, points[used[0]]) for point in course]
         move = where[-1][0] - where[0][0], where[-1][1] - where[0][1]
         long = sum(math.dist(*pair) for pair in pairwise(here))
@@ -201,20 +201,6 @@ def _course(
     apart = math.dist(course[0], points[0]) + math.dist(course[-1], points[1])
     turned = math.dist(course[-1], points[0]) + math.dist(course[0], points[1])
     return course[::-1] if turned < apart else course
-
-
-def _along(course: Sequence[Point], far: float) -> Point:
-    """The point so far along a way, or its other end if it is not so long; of a way back to the
-    same place, at most a third of it."""
-    if course[0] == course[-1]:
-        far = min(far, sum(math.dist(*pair) for pair in pairwise(course)) / 3)
-    for one, other in pairwise(course):
-        long = math.dist(one, other)
-        if long >= far > 0:
-            share = far / long
-            return one[0] + share * (other[0] - one[0]), one[1] + share * (other[1] - one[1])
-        far -= long
-    return course[-1]
 
 
 def _in_plane(point: Point, origin: Point) -> Point:
