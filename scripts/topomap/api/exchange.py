@@ -5,12 +5,16 @@ from topomap.drawing.scenes import Scene
 
 
 def exported(scene: Scene, form: str) -> str:
-    """A map as the text of a file: ``graphml``, ``json`` (node-link), ``dot`` or ``clingraph``.
-    Raises MemoryError."""
+    """A map as the text of a file: ``graphml``, ``json`` (node-link), ``dot``, ``clingraph``
+    or ``tmap2``. Raises MemoryError."""
     ready()
-    from topomap.exchange.exports import WRITERS
+    from topomap.exchange.exports import PLACED, WRITERS
 
-    return WRITERS[form](scene)
+    if form in WRITERS:
+        return WRITERS[form](scene)
+    from topomap.drawing.layout import layout
+
+    return PLACED[form](scene, layout(scene.world, scene.ahead))
 
 
 def imported(file: str) -> str:
