@@ -98,7 +98,7 @@ def _node(node: Node, edges: Iterable[Edge]) -> dict[str, Any]:
         "edges": [_edge(edge) for edge in edges],
         "pose": {
             "orientation": {"w": 1.0, "x": 0.0, "y": 0.0, "z": 0.0},
-            "position": {"x": float(x), "y": float(y), "z": 0.0},
+            "position": {"x": x + 0.0, "y": y + 0.0, "z": 0.0},
         },
         "properties": properties,
         "verts": [{"x": east, "y": north} for east, north in corners],
@@ -107,7 +107,7 @@ def _node(node: Node, edges: Iterable[Edge]) -> dict[str, Any]:
 
 def _edge(edge: Edge) -> dict[str, Any]:
     properties: dict[str, Any] = {"slot": edge.slot, "back": edge.back}
-    properties |= {} if edge.move is None else {"move": [float(one) for one in edge.move]}
+    properties |= {} if edge.move is None else {"move": [one + 0.0 for one in edge.move]}
     return {
         "action": ACTION,
         "edge_id": f"{edge.place}.{edge.slot}_{edge.to}.{edge.back}",

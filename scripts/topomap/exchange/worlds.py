@@ -81,7 +81,7 @@ def _straight(environment: Environment) -> list[tuple[str, int, int]] | None:
 
 def _move(environment: Environment, out: Gateway) -> tuple[float, float] | None:
     move = environment.moves.get(out)
-    return None if move is None else (float(move[0]), float(move[1]))
+    return None if move is None else (move[0] + 0.0, move[1] + 0.0)  # -0 becomes 0
 
 
 def _graph(

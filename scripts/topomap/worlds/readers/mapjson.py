@@ -91,7 +91,7 @@ def _plan(file: str, slots: int, entry: Mapping[str, Any], warnings: Sequence[st
     if "paths" in entry:
         try:
             paths = [[(_whole(p), _whole(s)) for p, s in path] for path in entry["paths"]]
-            straight = _straight(paths, ends)
+            straight = _straight(paths, ends, slots)
         except (LookupError, TypeError, ValueError):
             raise InputError(f"{file}: map 1: its paths do not go along its links") from None
         if {frozenset(pair) for pair in straight} == {
@@ -115,32 +115,41 @@ def _opposite(gateway: Gateway, slots: int) -> Gateway:
     return gateway[0], (gateway[1] + slots // 2) % slots
 
 
-def _straight(paths: Sequence[Sequence[Gateway]], ends: Mapping[Gateway, Gateway]) -> Pairs:
+def _straight(
+    paths: Sequence[Sequence[Gateway]], ends: Mapping[Gateway, Gateway], slots: int
+) -> Pairs:
     """The pairs of linked gateways that are on one path, by the headings of the paths. Raises
-    ValueError or LookupError if they do not go along the links.
+    ValueError or LookupError if they do not go along the links, or if that can be read in two ways.
 
-    A heading in the middle of a path is a gateway, and it is on one path with that by which one
-    arrives from the heading before. The last heading is pending, or there is no gateway in its
-    direction, unless the path is circular: then it leads to the first place. That it is a linked
-    gateway of this path, and not of another one that happens to lie in its direction, is told by
-    the others: a gateway is on one path only.
+    A heading that is not the last one is a gateway, and it is on one path with that by which one
+    arrives from the heading before. The last heading is pending, or a direction without a gateway
+    of this path, unless the path is circular: then it is linked to the first place. Another path
+    may have a gateway in that very direction, which is opposite to where one arrives. But each
+    gateway is on one path.
     """
-    arrivals = []  # of each path
     used: Counter[Gateway] = Counter()
+    pairs: Pairs = []
+    # Each as where one arrives, the last heading, and the first one.
+    circular: list[tuple[list[Gateway], Gateway, Gateway]] = []
+    perhaps: list[tuple[list[Gateway], Gateway, Gateway]] = []
     for path in paths:
         through = [ends[heading] for heading in path[:-1]]
         if [arrival[0] for arrival in through] != [place for place, _ in path[1:]]:
             raise ValueError("no link from place to place")
-        arrivals.append(through)
         used.update([*path[:-1], *through])
-    pairs: Pairs = []
-    for path, through in zip(paths, arrivals, strict=True):
         pairs += zip(through[:-1], path[1:-1], strict=True)
-        last, first = path[-1], path[0]
-        if last in ends and not used[last] and ends[last][0] == first[0]:
-            pairs.append((ends[last], first))
-            pairs += [(through[-1], last)] if through else []
-            used.update((last, ends[last]))
+        last = path[-1]
+        if last in ends and ends[last][0] == path[0][0]:
+            bare = through and _opposite(through[-1], slots) == last
+            (perhaps if bare else circular).append((through, last, path[0]))
+    for _, last, _ in circular:
+        used.update((last, ends[last]))
+    more = [one for one in perhaps if not used[one[1]]]
+    for _, last, _ in more:
+        used.update((last, ends[last]))
+    for through, last, first in circular + more:
+        pairs.append((ends[last], first))
+        pairs += [(through[-1], last)] if through else []
     if any(number > 1 for number in used.values()):
         raise ValueError("a gateway is on two paths")
     return pairs

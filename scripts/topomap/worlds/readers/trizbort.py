@@ -97,7 +97,7 @@ def read(file: str, content: bytes, reading: Reading) -> Plan:
             ("lines that lead nowhere", dangling, ""),
             ("lines up, down, in, out or without a port", without, _named(without)),
             ("loops", loops, _named(loops)),
-            ("rooms without a line", lone, _named(titles[name] or name for name in lone)),
+            ("rooms without a way", lone, _named(titles[name] or name for name in lone)),
         )
         if lines
     ]
