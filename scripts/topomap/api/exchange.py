@@ -6,15 +6,12 @@ from topomap.runtime.watch import Late, never
 
 
 def exported(scene: Scene, form: str, late: Late = never) -> tuple[str, str]:
-    """A map as the text of a file: ``graphml``, ``json`` (node-link), ``dot`` or ``clingraph``. The
-    last two tell where places are, and if they are drawn plainly, as it is ``late`` before there is
-    a better drawing, the second text says so. Raises MemoryError, and what ``late`` raises."""
+    """A map as the text of a file, with positions: ``graphml``, ``json`` (node-link), ``dot``,
+    ``clingraph`` or ``tmap2``. If places are drawn plainly, as it is ``late`` before there is a
+    better drawing, the second text says so. Raises MemoryError, and what ``late`` raises."""
     ready()
-    from topomap.exchange.exports import DRAWN, WRITERS
-
-    if form not in DRAWN:
-        return WRITERS[form](scene), ""
     from topomap.drawing.layout import layout
+    from topomap.exchange.exports import DRAWN
 
     laid = layout(scene.world, scene.ahead, late=late)
     return DRAWN[form](scene, laid), laid.note

@@ -58,7 +58,7 @@ SUBCOMMANDS = {
     ),
     "figures": "draw the paper's figures and some more, from computed answers",
     "export": (
-        "write a map for other tools: GraphML, JSON (node-link), DOT, or facts for clingraph"
+        "write a map for other tools: GraphML, JSON (node-link), DOT, facts for clingraph, tmap2"
     ),
     "import": "read a map that export wrote, and write it as solve --json does",
     "path": "print the folder of the encodings, for clingo, or that of the instances",

@@ -1,5 +1,5 @@
-"""Maps for other tools: GraphML and JSON (node-link), which ``imports`` reads back, DOT and
-clingraph.
+"""Maps for other tools: GraphML and JSON (node-link), which ``imports`` reads back, DOT,
+clingraph, and the tmap2 of robots.
 
 As a graph a map is a networkx MultiGraph: a node is a place, an edge a link. Lists are JSON
 texts in GraphML, which has none.
@@ -13,6 +13,9 @@ from typing import TYPE_CHECKING
 import clingo
 
 from topomap.drawing.scenes import Scene
+from topomap.exchange.robots import Edge as Leg
+from topomap.exchange.robots import Node as Stop
+from topomap.exchange.robots import tmap2_text
 from topomap.model.found import steps_json
 from topomap.model.topology import Gateway, Place, gid
 from topomap.runtime import formats, nx
@@ -37,6 +40,24 @@ COMMON = {
     },
 }
 STUB = {"shape": "point", "width": "0.06"}
+
+
+def _placed(scene: Scene, laid: "Layout | None") -> "nx.MultiGraph[int]":
+    """The map as a graph, whose nodes have coordinates ``x`` and ``y``, in the lengths of links, if
+    it is told where they are."""
+    graph = graph_of(scene)
+    for place, (x, y) in _points(laid).items() if laid else ():
+        graph.nodes[place].update(x=x, y=y)
+    return graph
+
+
+def _points(laid: "Layout") -> dict[Place, tuple[float, float]]:
+    """Where the places are."""
+
+    def near(number: float) -> float:
+        return round(float(number), 4) + 0.0  # -0 becomes 0
+
+    return {place: (near(point[0]), near(point[1])) for place, point in laid.places.items()}
 
 
 def graph_of(scene: Scene) -> "nx.MultiGraph[int]":
@@ -67,18 +88,18 @@ def graph_of(scene: Scene) -> "nx.MultiGraph[int]":
     return graph
 
 
-def graphml(scene: Scene) -> str:
+def graphml(scene: Scene, laid: "Layout | None" = None) -> str:
     """The map as GraphML."""
-    graph = graph_of(scene)
+    graph = _placed(scene, laid)
     every = [graph.graph, *graph.nodes.values(), *graph.edges.values()]
     for attributes in every:
         attributes.update({key: json.dumps(attributes[key]) for key in LISTS & set(attributes)})
     return "\n".join(nx.generate_graphml(graph, named_key_ids=True)) + "\n"
 
 
-def node_link(scene: Scene) -> str:
+def node_link(scene: Scene, laid: "Layout | None" = None) -> str:
     """The map as node-link JSON."""
-    return json.dumps(formats.headed(nx.node_link_data(graph_of(scene), edges="edges"))) + "\n"
+    return json.dumps(formats.headed(nx.node_link_data(_placed(scene, laid), edges="edges"))) + "\n"
 
 
 def _drawing(scene: Scene, laid: "Layout") -> tuple[list[Node], list[Edge]]:
@@ -172,5 +193,22 @@ def _term(node: Place | Gateway) -> str:
     return f"({node[0]},{node[1]})" if isinstance(node, tuple) else str(node)
 
 
-WRITERS: dict[str, Callable[[Scene], str]] = {"graphml": graphml, "json": node_link}
-DRAWN: dict[str, "Callable[[Scene, Layout], str]"] = {"dot": dot, "clingraph": clingraph}
+def tmap2(scene: Scene, laid: "Layout") -> str:
+    """The map as a tmap2, a length of 1 in the drawing taken for a metre."""
+    world = scene.world
+    points = _points(laid)
+    stops = [
+        Stop(str(place), points[place], sorted(star), sorted(world.landmarks.get(place, ())))
+        for place, star in world.stars.items()
+    ]
+    legs = [Leg(str(a[0]), a[1], str(b[0]), b[1]) for a, b in sorted(world.links.items())]
+    return tmap2_text(printable(scene.name), world.slots, 0.0, stops, legs)
+
+
+DRAWN: dict[str, "Callable[[Scene, Layout], str]"] = {
+    "dot": dot,
+    "clingraph": clingraph,
+    "graphml": graphml,
+    "json": node_link,
+    "tmap2": tmap2,
+}

@@ -69,7 +69,7 @@ def layout(file: str, plan: Plan, slots: int | None = None, north: float | None 
     exits = exits_of(plan.ways)
     gaps = [gap for of in exits.values() for gap in _gaps(of)]
     if slots is None and north is None and plan.slots:
-        slots, north = plan.slots, 0.0
+        slots, north = plan.slots, plan.north
     for many in range(FEWEST, MOST + 1, 2) if slots is None else [slots]:
         if slots is None and max(map(len, exits.values()), default=0) > many:
             continue
@@ -193,7 +193,7 @@ def _bend(one: float, other: float) -> float:
 
 def world_of(plan: Plan, at: Layout, straight: float | None = None) -> TopologicalMap:
     """The world of a plan; with ``straight``, exits are on one path as ``across_of`` has it, else
-    if they are opposite."""
+    as the plan says, or if they are opposite."""
     links = links_of(plan.ways, at)
     stars: dict[Place, set[int]] = {place: set() for place in sorted({p for p, _ in links})}
     for place, slot in links:
@@ -203,8 +203,16 @@ def world_of(plan: Plan, at: Layout, straight: float | None = None) -> Topologic
         {place: frozenset(star) for place, star in stars.items()},
         links,
         {place: terms for place, terms in plan.landmarks.items() if place in stars and terms},
-        None if straight is None else across_of(plan.ways, at, straight),
+        _pairs(plan, at) if straight is None else across_of(plan.ways, at, straight),
     )
+
+
+def _pairs(plan: Plan, at: Layout) -> dict[Gateway, Gateway] | None:
+    """Which exits are on one path, if the plan says so."""
+    if plan.straight is None:
+        return None
+    pairs = [[(end.place, at.slot(end.bearing)) for end in pair] for pair in plan.straight]
+    return {out: other for one, two in pairs for out, other in ((one, two), (two, one))}
 
 
 def exit_towards(place: Place, here: tuple[float, float], there: tuple[float, float]) -> Exit:

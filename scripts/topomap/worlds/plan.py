@@ -38,9 +38,11 @@ class Plan:
 
     ``points`` holds where places are, as far as that is told; ``landmarks`` what is recognised at a
     place, as terms of clingo; ``names`` what a place is called, if that is not its own name.
-    ``slots`` is the number of directions that the file knows, all ways leading in one of them from
-    slot 0, which is north; None if bearings may be any. ``notes`` go into the header of an
-    instance, and ``told`` are warnings, each one line that names the file.
+    ``slots`` is the number of directions that the file knows, all ways leading in one of them, slot
+    0 in the direction ``north``, in degrees clockwise of north; None if bearings may be any.
+    ``straight`` holds the pairs of exits of a place that are on one path; None if opposite ones
+    are. ``notes`` go into the header of an instance, and ``told`` are warnings, each one line that
+    names the file.
     """
 
     name: str
@@ -49,6 +51,8 @@ class Plan:
     landmarks: Mapping[Place, frozenset[str]] = field(default_factory=dict)
     names: Mapping[Place, str] = field(default_factory=dict)
     slots: int | None = None
+    north: float = 0.0
+    straight: tuple[tuple[Exit, Exit], ...] | None = None
     notes: tuple[str, ...] = ()
     told: tuple[str, ...] = ()
 

@@ -12,11 +12,17 @@ from pathlib import Path
 from topomap.runtime.errors import InputError
 from topomap.runtime.files import read_bytes
 from topomap.worlds.plan import Plan, Reading
+from topomap.worlds.readers.common import with_names
 
 FORMATS = {
     "graphml": "a street or corridor network in GraphML, as OSMnx writes it",
     "survex": "a cave survey of Survex (.svx)",
     "map_server": "a floor plan of map_server of ROS (.yaml, with a PNG or PGM image)",
+    "trizbort": "a Trizbort map",
+    "mapjson": "a map in JSON, as topomap solve --json writes it",
+    "tmap2": "a tmap2 of topological_navigation, in YAML",
+    "nodelink": "a graph in node-link JSON, as networkx writes it",
+    "facts": "facts link(P,S,Q,R), with slots(K)",
 }
 
 
@@ -29,6 +35,6 @@ def read(file: str | Path, reading: Reading) -> Plan:
             plan: Plan = reader.read(str(file), content, reading)
             if not plan.ways:
                 raise InputError(f"{file}: no ways in it")
-            return plan
+            return with_names(plan) if reading.landmarks else plan
     known = "; ".join(FORMATS.values())
     raise InputError(f"{file}: it is none of the formats that are known: {known}")

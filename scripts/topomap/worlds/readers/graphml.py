@@ -26,6 +26,7 @@ from topomap.runtime.errors import InputError, printable
 from topomap.runtime.limits import LARGEST
 from topomap.worlds.courses import exit_towards, point_along
 from topomap.worlds.plan import Plan, Point, Reading, Way
+from topomap.worlds.readers import exact
 
 Data = Mapping[str, Any]  # what is told of an edge
 DEGREE = 111_195  # metres of a degree of latitude, on a sphere of 6,371 km
@@ -40,7 +41,8 @@ def fits(name: str, content: bytes) -> bool:
 
 def read(file: str, content: bytes, reading: Reading) -> Plan:
     """The plan in a GraphML file. Raises InputError on bad input."""
-    return plan_of(file, read_graphml(file, content), reading)
+    graph = read_graphml(file, content)
+    return exact.plan_of(file, graph) if exact.fits(graph) else plan_of(file, graph, reading)
 
 
 def read_graphml(file: str | Path, content: bytes, node_type: type = str) -> "nx.Graph[Any]":
@@ -192,7 +194,7 @@ def _course(
     """The points of a way from its first end to its second."""
     try:
         course = _points(_key(data))
-    except (ValueError, TypeError, KeyError, IndexError, RecursionError):
+    except (ValueError, TypeError, KeyError, IndexError, RecursionError, OverflowError):
         names = f"{printable(str(ends[0]))} to {printable(str(ends[1]))}"
         said = "its geometry is no LINESTRING (x y, ...), and no list of points"
         raise InputError(f"{file}: the way from place {names}: {said}") from None
@@ -221,7 +223,7 @@ def _point(file: str, graph: "nx.Graph[Any]", place: Place) -> Point:
         if x in attributes and y in attributes:
             try:
                 point = float(attributes[x]), float(attributes[y])
-            except (TypeError, ValueError):
+            except (TypeError, ValueError, OverflowError):
                 point = math.nan, math.nan
             if all(abs(number) <= LARGEST for number in point):
                 return point

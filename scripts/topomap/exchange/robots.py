@@ -1,0 +1,116 @@
+"""The tmap2 of topological_navigation, which robots go by (ROS and ROS 2): YAML.
+
+Each node has a pose, its position in metres, and edges to its neighbours. What topomap knows
+besides stands where such a map has room for it, so that ``worlds/readers/tmap2.py`` reads the same
+world: under ``meta`` the ``slots``, where slot 0 points (``north``), and the pairs that are
+``straight``; under the ``properties`` of an edge the ``slot`` by which it leaves, that by which it
+arrives (``back``), and how far it leads (``move``); under those of a node ``gateways``,
+``landmarks`` and a ``title``.
+"""
+
+from collections.abc import Iterable, Sequence
+from typing import Any, NamedTuple
+
+import yaml
+
+from topomap.model.topology import Place
+
+ACTION = "navigate_to_pose"
+# A date is demanded. It is the same in all files, so that the same map gives the same bytes.
+UPDATED = "01-01-1970_00-00-00"
+ZONE = 0.5  # metres: half a side of the square round a node in which a robot is said to be there
+
+
+class Node(NamedTuple):
+    """A place: its name, where it is, its gateways and landmarks, and what else it is called."""
+
+    name: str
+    point: tuple[float, float]
+    gateways: Sequence[int]
+    landmarks: Sequence[str] = ()
+    title: str | None = None
+
+
+class Edge(NamedTuple):
+    """A way in one direction: by which slot it leaves which place, where it arrives, and how far it
+    leads, east and north."""
+
+    place: str
+    slot: int
+    to: str
+    back: int
+    move: tuple[float, float] | None = None
+
+
+class _Dumper(getattr(yaml, "CSafeDumper", yaml.SafeDumper)):  # type: ignore[misc]
+    """The safe writer, without aliases."""
+
+    def ignore_aliases(self, data: Any) -> bool:
+        return True
+
+
+def tmap2_text(
+    name: str,
+    slots: int,
+    north: float,
+    nodes: Iterable[Node],
+    edges: Iterable[Edge],
+    straight: Sequence[tuple[Place, int, int]] | None = None,
+) -> str:
+    """A tmap2 as text; ``edges`` has each way in both directions."""
+    leaving: dict[str, list[Edge]] = {}
+    for edge in edges:
+        leaving.setdefault(edge.place, []).append(edge)
+    meta: dict[str, Any] = {"last_updated": UPDATED, "slots": slots, "north": north}
+    if straight is not None:
+        meta["straight"] = [[*pair] for pair in straight]
+    document = {
+        "meta": meta,
+        "metric_map": name,
+        "name": name,
+        "pointset": name,
+        "transformation": {
+            "topo_frame_id": "topo_map",
+            "parent": "map",
+            "rotation": {"w": 1.0, "x": 0.0, "y": 0.0, "z": 0.0},
+            "translation": {"x": 0.0, "y": 0.0, "z": 0.0},
+        },
+        "nodes": [
+            {
+                "meta": {"map": name, "node": node.name, "pointset": name},
+                "node": _node(node, leaving.get(node.name, ())),
+            }
+            for node in nodes
+        ],
+    }
+    return str(yaml.dump(document, Dumper=_Dumper, sort_keys=False, allow_unicode=True, width=100))
+
+
+def _node(node: Node, edges: Iterable[Edge]) -> dict[str, Any]:
+    x, y = node.point
+    properties: dict[str, Any] = {"xy_goal_tolerance": 0.3, "yaw_goal_tolerance": 6.28}
+    properties |= {"title": node.title} if node.title is not None else {}
+    properties["gateways"] = [*node.gateways]
+    properties["landmarks"] = [*node.landmarks]
+    corners = ((-ZONE, -ZONE), (ZONE, -ZONE), (ZONE, ZONE), (-ZONE, ZONE))
+    return {
+        "name": node.name,
+        "edges": [_edge(edge) for edge in edges],
+        "pose": {
+            "orientation": {"w": 1.0, "x": 0.0, "y": 0.0, "z": 0.0},
+            "position": {"x": x + 0.0, "y": y + 0.0, "z": 0.0},
+        },
+        "properties": properties,
+        "verts": [{"x": east, "y": north} for east, north in corners],
+    }
+
+
+def _edge(edge: Edge) -> dict[str, Any]:
+    properties: dict[str, Any] = {"slot": edge.slot, "back": edge.back}
+    properties |= {} if edge.move is None else {"move": [one + 0.0 for one in edge.move]}
+    return {
+        "action": ACTION,
+        "edge_id": f"{edge.place}.{edge.slot}_{edge.to}.{edge.back}",
+        "node": edge.to,
+        "properties": properties,
+    }

@@ -1,0 +1,159 @@
+"""Worlds as files: GraphML, node-link JSON and tmap2, which ``worlds/readers`` reads back."""
+
+import json
+import re
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from topomap.exchange.robots import Edge, Node, tmap2_text
+from topomap.model.topology import Gateway, Place, label
+from topomap.runtime import formats, nx
+from topomap.runtime.errors import InputError, printable
+from topomap.worlds.environment import Environment
+from topomap.worlds.plan import Point
+
+Names = Mapping[Place, str]
+LISTS = ("ends", "move", "landmarks", "straight")
+_NO_XML = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
+
+
+def world_text(
+    environment: Environment,
+    points: Mapping[Place, Point],
+    form: str,
+    north: float = 0.0,
+    names: Names | None = None,
+) -> str:
+    """A world as the text of a file. Who reads it has the same slots, links, landmarks and moves,
+    and the same places by their labels.
+
+    Parameters:
+        environment: the world.
+        points: where its places are; if there are none, this is told by its moves.
+        form: ``graphml``, ``json`` (node-link) or ``tmap2``.
+        north: where slot 0 points, in degrees clockwise of north.
+        names: what places are called, if that is not their label.
+
+    Raises:
+        InputError: one line, if a name cannot be written in this format, if two places have one
+            label, or if it is not told where a place of a tmap2 is.
+        ValueError: on another ``form``.
+    """
+    if form not in WRITERS:
+        raise ValueError(f"{form!r} is none of {', '.join(WRITERS)}")
+    labels = [label(place) for place in environment.map.stars]
+    if len({*labels}) < len(labels):
+        raise InputError(f"{environment.name}: two places have one label")
+    where = dict(points) or points_of(environment)
+    return WRITERS[form](environment, where, north, names or {})
+
+
+def points_of(environment: Environment) -> dict[Place, Point]:
+    """Where places are, as far as the moves tell it: from the first place of each part, along the
+    ways by which one comes first to a place. If the world is not flat, as a torus is not, other
+    ways may lead elsewhere."""
+    where: dict[Place, Point] = {}
+    moves, links = environment.moves, environment.map.links
+    if not moves:
+        return where
+    for start in environment.map.stars:
+        if start in where:
+            continue
+        where[start] = (0.0, 0.0)
+        for place in (waiting := [start]):
+            x, y = where[place]
+            for slot in sorted(environment.map.stars[place]):
+                out = place, slot
+                if out in links and out in moves and links[out][0] not in where:
+                    there = links[out][0]
+                    where[there] = (x + moves[out][0], y + moves[out][1])
+                    waiting.append(there)
+    return where
+
+
+def _straight(environment: Environment) -> list[tuple[str, int, int]] | None:
+    """The pairs of gateways on one path, if they are told."""
+    across = environment.map.across
+    if across is None:
+        return None
+    return [(label(one[0]), one[1], other[1]) for one, other in across.items() if one < other]
+
+
+def _move(environment: Environment, out: Gateway) -> tuple[float, float] | None:
+    move = environment.moves.get(out)
+    return None if move is None else (move[0] + 0.0, move[1] + 0.0)  # -0 becomes 0
+
+
+def _graph(
+    environment: Environment, points: Mapping[Place, Point], north: float, names: Names
+) -> "nx.MultiGraph[str]":
+    world = environment.map
+    graph: nx.MultiGraph[str] = nx.MultiGraph()
+    graph.graph.update(name=printable(environment.name), slots=world.slots, north=float(north))
+    if (straight := _straight(environment)) is not None:
+        graph.graph["straight"] = straight
+    for place in world.stars:
+        about: dict[str, Any] = {"landmarks": sorted(world.landmarks.get(place, ()))}
+        about |= {"name": names[place]} if place in names else {}
+        if place in points:
+            about |= {"x": float(points[place][0]), "y": float(points[place][1])}
+        graph.add_node(label(place), **about)
+    for a, b in world.edges():
+        one, other = label(a[0]), label(b[0])
+        move = _move(environment, a)
+        told: dict[str, Any] = {} if move is None else {"move": [*move]}
+        graph.add_edge(one, other, None, ends=[[one, a[1]], [other, b[1]]], **told)
+    return graph
+
+
+def _graphml(
+    environment: Environment, points: Mapping[Place, Point], north: float, names: Names
+) -> str:
+    graph = _graph(environment, points, north, names)
+    for text in (*graph, *names.values()):
+        if _NO_XML.search(text):
+            raise InputError(f"{environment.name}: XML has no place for the name {printable(text)}")
+    for attributes in (graph.graph, *graph.nodes.values(), *graph.edges.values()):
+        attributes.update({k: json.dumps(attributes[k]) for k in LISTS if k in attributes})
+    return "\n".join(nx.generate_graphml(graph, named_key_ids=True)) + "\n"
+
+
+def _node_link(
+    environment: Environment, points: Mapping[Place, Point], north: float, names: Names
+) -> str:
+    graph = _graph(environment, points, north, names)
+    return json.dumps(formats.headed(nx.node_link_data(graph, edges="edges"))) + "\n"
+
+
+def _tmap2(
+    environment: Environment, points: Mapping[Place, Point], north: float, names: Names
+) -> str:
+    world = environment.map
+    if lost := [place for place in world.stars if place not in points]:
+        name = printable(label(lost[0]))
+        raise InputError(f"{environment.name}: it is not told where place {name} is")
+    nodes = [
+        Node(
+            label(place),
+            points[place],
+            sorted(star),
+            sorted(world.landmarks.get(place, ())),
+            names.get(place),
+        )
+        for place, star in world.stars.items()
+    ]
+    edges = [
+        Edge(label(a[0]), a[1], label(b[0]), b[1], _move(environment, a))
+        for a, b in sorted(world.links.items())
+    ]
+    straight = _straight(environment)
+    return tmap2_text(
+        printable(environment.name), world.slots, float(north), nodes, edges, straight
+    )
+
+
+WRITERS: dict[str, Callable[[Environment, Mapping[Place, Point], float, Names], str]] = {
+    "graphml": _graphml,
+    "json": _node_link,
+    "tmap2": _tmap2,
+}
