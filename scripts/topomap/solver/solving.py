@@ -115,7 +115,7 @@ def best(
             try:
                 for found in way(experience, asked, watch, kind):
                     if found and found.cost[: len(least)] == least:
-                        some = True
+                        some = some or found.proved
                         rest = found.cost[len(least) :]
                         yield replace(found, cost=(*least, *before, *rest))
             finally:
