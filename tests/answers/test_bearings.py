@@ -14,6 +14,7 @@ from topomap.model.experience import Experience
 from topomap.model.facts import parse
 from topomap.runtime.errors import InputError
 from topomap.solver.online import OnlineSolver
+from topomap.solver.stepwise import Asked
 
 MOST = 500  # maps of a random experience
 
@@ -151,7 +152,7 @@ def test_step_by_step(block):
         draw = random.Random(f"bent online {block}/{number}")
         seen = bent(draw, 6)
         measured = seen.drift, seen.stretch, seen.tolerance
-        follower = OnlineSolver(seen.slots, told(seen, 0), False, None, 10_000, *measured)
+        follower = OnlineSolver(seen.slots, told(seen, 0), Asked(False, None, 10_000, *measured))
         for step, status in followed(draw, seen, follower, Truth(seen).levels):
             truth = Truth(seen.cut(step))
             wanted = truth.best(True) or truth.best(False)

@@ -1,16 +1,20 @@
 """``topomap solve`` chooses by counted work which way gives the maps, and says which one did."""
 
 import json
+import random
 import time
+from collections import Counter
 
 import pytest
 from conftest import ROOT
+from oracles.worlds import random_experience
 from topomap.api.solve import solve
 from topomap.cli import main
 from topomap.model.facts import read
 from topomap.model.query import Query
 from topomap.runtime.watch import Stopped, Watch
 from topomap.search import descent
+from topomap.search.descent import Descent, TooLarge
 from topomap.search.lookahead import LookAhead
 from topomap.solver import choice, solving
 from topomap.solver.choice import Trial
@@ -248,3 +252,82 @@ def test_an_unknown_way_is_refused():
     with pytest.raises(ValueError, match="'guess' is not one of the ways auto, clingo, search"):
         solve(read(ROOT / SMALL), by="guess")
     assert main(["solve", SMALL, "--by", "guess"]) == 2
+
+
+@pytest.mark.parametrize("given_up", [False, True])
+@pytest.mark.parametrize("large", [False, True])
+def test_an_open_map_that_comes_first_hides_no_other(monkeypatch, large, given_up):
+    """The optimal maps are those of clingo where the search gives open maps, as it has found no
+    closed one yet: by the search, and by what suits, also if it is given up then."""
+    monkeypatch.setattr(descent, "OFTEN", 4)
+    monkeypatch.setattr(descent, "GREEDY_AFTER", 4)
+    monkeypatch.setattr(descent, "MANY_PAIRS", -1 if large else 5_000)
+    meanwhile = Counter()
+    open_ones = Descent._open_ones
+
+    def counted(self):
+        for found in open_ones(self):
+            assert (found.open, found.proved) == (True, False)
+            meanwhile["open maps"] += 1
+            yield found
+
+    def heed(self, search):
+        if search.nodes > 8:
+            meanwhile["given up"] += 1
+            raise TooLarge
+
+    monkeypatch.setattr(Descent, "_open_ones", counted)
+    if given_up:
+        monkeypatch.setattr(Trial, "_heed", heed)
+    kinds = Counter()
+    for number in range(60):
+        draw = random.Random(f"open first {number}")
+        experience = random_experience(draw, 11)
+        parts = draw.choice([{}, {"planar": True}, {"perpendicular": True}])
+        true = solve(experience, optimal=True, by="clingo", **parts)
+        for by in ("auto",) if given_up else ("auto", "search"):
+            answer = solve(experience, optimal=True, by=by, **parts)
+            assert (answer.kind, answer.cost) == (true.kind, true.cost)
+            assert {one.at for one in answer} == {one.at for one in true}
+            assert answer.complete
+        kinds[true.kind] += 1
+    assert min(kinds["optimal"], kinds["best so far"]) > 5
+    assert meanwhile["open maps"] > 4
+    assert bool(meanwhile["given up"]) is given_up
+
+
+def test_the_walks_on_which_an_open_map_hid_the_closed_ones():
+    for seed, kind in ((110, "optimal"), (6, "best so far")):
+        walk = instance(grid(4, 4), "walk", steps=36, seed=seed).experience
+        found = [solve(walk, optimal=True, by=by) for by in ("search", "clingo")]
+        assert [one.kind for one in found] == [kind, kind]
+        assert found[0].cost == found[1].cost
+        assert {one.at for one in found[0]} == {one.at for one in found[1]}
+
+
+def test_an_open_map_that_is_given_at_the_time_limit_is_called_so(inside, monkeypatch, tmp_path):
+    """Nothing is said of what closed maps cost; and where closed maps are asked for, and not the
+    optimal ones, it is not given."""
+    file = facts(tmp_path / "walk.lp", 4, 4, "walk", steps=60, seed=3)
+    deepen = Descent._deepen
+
+    def stopped(self, *arguments):
+        if self._kind == "best so far":
+            yield from deepen(self, *arguments)
+        else:
+            raise Stopped("timeout")
+
+    monkeypatch.setattr(descent, "DEEPEN_LONG", 4)
+    monkeypatch.setattr(Descent, "_deepen", stopped)
+    call = "solve", file, "--planar", "--by", "search"
+    done = inside(*call, "--optimal")
+    assert done.stdout.splitlines()[-1] == (
+        "1 map found by search, cost 0 6 10, with pending gateways, as no closed map is found yet; "
+        "partial: timeout"
+    )
+    answer = json.loads(inside(*call, "--optimal", "--json").stdout)
+    assert answer["open"] is True
+    assert "least" not in answer
+    assert answer["maps"][0]["pending"]
+    done = inside(*call, "--closed", "--minimal")
+    assert done.stdout == "no map found yet; partial: timeout\n"

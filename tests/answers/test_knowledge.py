@@ -22,6 +22,7 @@ from topomap.search.descent import Descent
 from topomap.search.traversal import depth_first, root
 from topomap.solver import phases
 from topomap.solver.online import OnlineSolver
+from topomap.solver.stepwise import Asked
 from topomap.worlds.environment import grid
 from topomap.worlds.instance import instance
 from topomap.worlds.senses import Senses
@@ -109,7 +110,8 @@ def test_step_by_step(block):
         draw = random.Random(f"informed online {block}/{number}")
         seen = informed(draw, 7) if number % 2 else logs(draw, 6)
         levels = Truth(seen).levels
-        follower = OnlineSolver(seen.slots, told(seen, 0), drift=seen.drift, stretch=seen.stretch)
+        asked = Asked(drift=seen.drift, stretch=seen.stretch)
+        follower = OnlineSolver(seen.slots, told(seen, 0), asked)
         assert len([*followed(draw, seen, follower, levels)]) >= seen.steps
         TRIED["explorations with more than views, step by step"] += 1
 

@@ -62,7 +62,7 @@ def test_what_no_listing_ends():
 
 def test_what_cannot_be_merged_is_refused():
     seen = topomap.read(ROOT / "instances/grid-3x3-snake.lp")
-    with pytest.raises(InputError, match="planar: maps that are asked for it hardly merge"):
+    with pytest.raises(InputError, match=r"by merging: planar \(only closed, perpendicular"):
         topomap.count(seen, merging=True, planar=True)
     for number in range(40):
         told = logs(random.Random(f"unmerged {number}"), 5)

@@ -18,6 +18,7 @@ from topomap.search import traversal
 from topomap.solver import online, solving
 from topomap.solver.boundaries import crossed
 from topomap.solver.online import Certain, OnlineSolver
+from topomap.solver.stepwise import Asked
 
 WATCH = Watch()
 
@@ -31,7 +32,9 @@ WAYS = pytest.mark.parametrize(
 def begun(experience, planar=False, bound=None, most=online.MOST_COUNTED, **options):
     measured = experience.drift, experience.stretch, experience.tolerance
     first = told(experience, 0)
-    return OnlineSolver(experience.slots, first, planar, bound, most, *measured, **options)
+    axiom = options.pop("path_axiom", True)
+    asked = Asked(planar, bound, most, *measured, axiom)
+    return OnlineSolver(experience.slots, first, asked, **options)
 
 
 def go(follower, experience, step):

@@ -26,6 +26,7 @@ from topomap.runtime.files import output
 from topomap.runtime.watch import Stopped, Watch
 from topomap.solver import online, programs, solving
 from topomap.solver.online import OnlineSolver
+from topomap.solver.stepwise import Asked
 from topomap.worlds.environment import grid
 from topomap.worlds.instance import instance
 from topomap.worlds.senses import Senses
@@ -94,7 +95,7 @@ def measured(name: str, planar: bool, places: int | None, limit: float) -> Itera
             follower.step(Step(experience.turns[step - 1], view, landmarks))
         else:
             first = Step(None, experience.views[0], experience.landmarks[0])
-            follower = OnlineSolver(experience.slots, first, planar, places)
+            follower = OnlineSolver(experience.slots, first, Asked(planar, places))
         status = follower.status(Watch())
         done = time.process_time()
         try:

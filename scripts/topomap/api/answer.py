@@ -209,8 +209,10 @@ class Answer(Sequence[Map]):
     @property
     def least(self) -> tuple[int, ...] | None:
         """What each map costs at least, as far as it is proved, if something was minimised; or
-        None."""
+        None, also where the map that is given is not closed, but may not be the optimal one."""
         known = self._settled()
+        if known.last and known.last.open:
+            return None
         least = self.cost if known.last and known.last.proved else self._watch.least
         return least or None
 

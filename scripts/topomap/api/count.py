@@ -31,8 +31,8 @@ Number = Literal[
 class Counts(Reply, Mapping[str, Figure]):
     """The figures of a search tree, by name: ``per_step`` (hypotheses after each step, from 0),
     ``nodes``, ``maps_built``, ``final``, ``closed``, ``closed_text``, ``optimal``,
-    ``perpendicular``; if they were asked for, ``circumscribed`` and ``circumscribed_kind``. What
-    was not counted is None."""
+    ``perpendicular``; if they were asked for, ``circumscribed`` and ``circumscribed_kind``;
+    ``way``, "merging", where maps were counted by merging. What was not counted is None."""
 
     def __init__(self, figures: Mapping[str, Any], fault: str | None):
         super().__init__(fault)
@@ -117,7 +117,7 @@ def count(
 def merged_under(watch: Watch, experience: Experience, query: Query) -> Counts:
     """How many maps there are, and how many of them are closed, by merging; under the watch of a
     command. What is soonest found comes first."""
-    figures: dict[str, Any] = {**dict.fromkeys(statistics.KEYS), "per_step": []}
+    figures: dict[str, Any] = {**dict.fromkeys(statistics.KEYS), "per_step": [], "way": "merging"}
     with Attempt() as attempt:
         for key, number in statistics.merged(experience, query, watch):
             figures[key] = number

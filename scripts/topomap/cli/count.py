@@ -38,7 +38,7 @@ def add(group: Any) -> None:
         "--merging",
         action="store_true",
         help="count by merging hypotheses that have the same future, for what is too much to be "
-        "listed: how many maps there are, are closed, and are closed and perpendicular",
+        "listed: all maps, the closed ones, and those that are closed and perpendicular",
     )
     add_crew(made)
     add_resume(made)
@@ -50,8 +50,9 @@ def run(args: argparse.Namespace) -> int:
     from topomap.runtime.watch import heeding
 
     experience = experience_of(args, args.instance)
-    if args.merging and (args.circumscribe or args.dask or (args.jobs or 1) > 1):
-        raise InputError("topomap count: --merging: not with --circumscribe, --jobs or --dask")
+    if args.merging and (args.circumscribe or args.dask or (args.jobs or 1) > 1 or args.resume):
+        other = "--circumscribe, --jobs, --dask or --resume"
+        raise InputError(f"topomap count: --merging: not with {other}")
     with (
         crew_of(args) as crew,
         Journal(args.output, run_of(args, experience), args.resume) as journal,

@@ -53,7 +53,7 @@ what is certain: new(T), the place where the agent is after step T was not visit
         "lines already, go on after them",
     )
     add("--planar", action="store_true", help=f"{PARTS['planar']}; of one log only (no start)")
-    add("--no-path-axiom", action="store_true", help=f"{PARTS['no_path_axiom']}")
+    add("--no-path-axiom", action="store_true", help=PARTS["no_path_axiom"])
     add("--bound", type=number(int, 1), metavar="B", help="at most B places")
     add(
         "--marker",

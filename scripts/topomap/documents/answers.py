@@ -220,6 +220,8 @@ class Report:
         if self.as_json:
             kind = self.last.kind if self.count or not fault else None
             tail: dict[str, Any] = {"kind": kind, "count": self.count}
+            if self.last.open:
+                tail["open"] = True
             if self.last.cost:
                 tail |= {"cost": self.last.cost, "proved": self.last.proved}
                 if not self.last.proved and least:
@@ -241,7 +243,9 @@ class Report:
             line += f" by {by}"
         if self.last.cost:
             line += f", cost {' '.join(map(str, self.last.cost))}"
-        if not self.last.proved:
+        if self.last.open:
+            line += ", with pending gateways, as no closed map is found yet"
+        elif not self.last.proved:
             line += f", {UNPROVED}"
             if least:
                 line += f", proved to cost at least {' '.join(map(str, least))}"

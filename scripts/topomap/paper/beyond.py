@@ -57,10 +57,9 @@ def rows(
             "places": None,
             **dict.fromkeys(KEYS),
             "per_step": [],
-            **_by_merging(made, Query(), watch, journal),
             "way": "merging",
             "clingo": {},
-            "merging": {},
+            "merging": _by_merging(made, Query(), watch, journal),
         }
 
 

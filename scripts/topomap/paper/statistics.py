@@ -265,10 +265,13 @@ def figures_text(figures: Mapping[str, Any], fault: str | None) -> str:
     then come to."""
     least = figures.get("at_least")
     told, more = (least, "at least ") if least else (figures, "")
-    steps = " ".join(map(str, told["per_step"])) or "not counted"
-    lines = [f"hypotheses after each step: {more}{steps}"]
+    merging = figures.get("way") == "merging"
+    lines = []
+    if not merging:
+        steps = " ".join(map(str, told["per_step"])) or "not counted"
+        lines.append(f"hypotheses after each step: {more}{steps}")
     asked = ("circumscribed",) if "circumscribed" in figures else ()
-    for key in (*KEYS, *asked):
+    for key in (*(key for key in KEYS if key in MERGED or not merging), *asked):
         known = "not counted" if told.get(key) is None else f"{more}{told[key]:,}"
         lines.append(f"{WORDS[key]:<42}{known:>12}")
     if (kind := figures.get("circumscribed_kind")) and kind != "circumscribed":

@@ -18,6 +18,7 @@ from topomap.runtime.watch import Watch
 from topomap.search.certainty import Certain
 from topomap.search.living import Living, Told, experience_of
 from topomap.solver.online import LivingMap, OnlineSolver, ReadMap, Status
+from topomap.solver.stepwise import Asked
 
 SHOWN = 3  # best maps that are told in text
 WAY = 201  # dstates of the way in a map that are told, the last ones: of a log of 200 steps all
@@ -169,10 +170,9 @@ class Following:
         if self.solver is None:
             record = self.record
             assert record.slots is not None
-            limits = self.planar, self.bound, self.most
             measured = record.drift, record.stretch, record.tolerance
-            options = *limits, *measured, self.path_axiom
-            self.solver = OnlineSolver(record.slots, step, *options, *self._living)
+            asked = Asked(self.planar, self.bound, self.most, *measured, self.path_axiom)
+            self.solver = OnlineSolver(record.slots, step, asked, *self._living)
         else:
             self.solver.step(step)
 

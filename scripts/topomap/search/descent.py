@@ -5,7 +5,7 @@ from collections.abc import Callable, Collection, Iterator, Sequence
 from dataclasses import replace
 
 from topomap.model.experience import Experience
-from topomap.model.found import OPEN, Cube, Found
+from topomap.model.found import BEST_SO_FAR, OPTIMAL, Cube, Found
 from topomap.model.query import Query
 from topomap.runtime.watch import Stopped, Watch, spared
 from topomap.search.hypothesis import OFTEN, Hypothesis
@@ -73,14 +73,15 @@ class Descent:
         self._watch: Watch | None = None
         self._best: dict[Cube, Found] = {}  # all of one cost
         self._worst: Cost | None = None  # what they cost: no map is wanted that costs more
-        # Of each node on the way to the one where the search stands: its children that are to be
-        # visited, the share of the tree below each, and what a map below them costs at least.
-        self._deepened: int | None = (
-            None  # so many places the maps have at least that are not found
-        )
         self._fewest: int | None = None  # places of a map that is found
-        self._flat = True  # whether planar ones are sought
-        self._decided: list[int] = []  # where these nodes arrived
+        # How many places the next search for a map of few places allows; whether it is one for
+        # planar maps, where the genus is minimised.
+        self._deepened: int | None = None
+        self._flat = True
+        # Of each node on the way to the one where the search stands: where it arrived; its children
+        # that are to be visited, the share of the tree below each, and what a map below them costs
+        # at least.
+        self._decided: list[int] = []
         self._way: list[tuple[list[int], float, Cost]] = []
 
     @property
@@ -101,8 +102,9 @@ class Descent:
 
     @property
     def expected(self) -> float:
-        """How many maps there are, as far as that can be told; 0 if none was found yet."""
-        return self.maps / self.passed if self.maps else 0.0
+        """How many maps there are, as far as that can be told; 0 if nothing of the tree has come to
+        its end yet. (Maps may have been found elsewhere by then.)"""
+        return self.maps / self.passed if self.passed else 0.0
 
     @property
     def least(self) -> Cost | None:
@@ -196,7 +198,7 @@ class Descent:
         large = self._large
         if first and not large:
             yield from self._greedily(begun)
-        if self._worst is None and first and "closed" in self.query.parts:
+        if self._worst is None and first and self._kind == OPTIMAL:
             yield from self._open_ones()
         if self._worst is None or large:
             yield from self._deepen(begun, (DEEPEN_LONG if large else DEEPEN) * self.nodes)
@@ -236,8 +238,8 @@ class Descent:
         self._go((), self._decided)
 
     def _open_ones(self) -> Iterator[Found]:
-        """While no closed map is found: the best map that need not be closed, as far as it is soon
-        found. It is not proved to be best, as there may be a closed one."""
+        """While no closed map is found: the best map with pending gateways, as far as it is soon
+        found. If there is a closed map, it is not the optimal one."""
 
         def heed(descent: "Descent") -> None:
             if descent.nodes > (0 if self._large else GREEDY_AFTER) + OFTEN:
@@ -245,9 +247,9 @@ class Descent:
 
         query = replace(self.query, parts=self.query.parts - {"closed"})
         try:
-            for found in Descent(self._experience, query, OPEN, heed).found(self._watch):
+            for found in Descent(self._experience, query, BEST_SO_FAR, heed).found(self._watch):
                 if found:
-                    yield replace(found, proved=False)
+                    yield replace(found, kind=OPTIMAL, proved=False, open=True)
         except TooLarge:
             pass
 

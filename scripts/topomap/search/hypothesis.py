@@ -228,10 +228,7 @@ class Hypothesis:
 
     def face(self, gateway: int) -> Face:
         """The face on which a pending gateway lies."""
-        for face in self.faces:
-            if gateway in face:
-                return face
-        raise KeyError(gateway)
+        return face_of(self.faces, gateway)
 
     def fitting(self, gateways: Face) -> list[int]:
         """Those gateways whose view is what the next step sees."""
@@ -422,19 +419,9 @@ class Hypothesis:
     def _add_link(self, out: int, arrival: int) -> Link:
         place, step = arrival // self.slots, self.steps + 1
         faces = self.faces
-        here = self.face(out)
-        rest = after(here, out)
-        others = [face for face in faces if face is not here]
         if place == step:
             self._add_place(place)
-            self.faces = (after(self.stars[place], arrival) + rest, *others)
-        elif arrival in rest:
-            middle = rest.index(arrival)
-            self.faces = (rest[:middle], rest[middle + 1 :], *others)
-        else:
-            there = self.face(arrival)
-            others.remove(there)
-            self.faces = (rest + after(there, arrival), *others)
+        self.faces = linked(faces, out, arrival, self.stars[place] if place == step else None)
         parts = self.component(out // self.slots), self.component(place)
         if self.parted and parts[0] != parts[1]:
             self._part[parts[1]] = parts[0]
@@ -526,6 +513,31 @@ class Hypothesis:
             self.undo()
         for arrival in at[len(self.at) :]:
             self.enter(arrival)
+
+
+def face_of(faces: Iterable[Face], gateway: int) -> Face:
+    """The face on which a pending gateway lies."""
+    for face in faces:
+        if gateway in face:
+            return face
+    raise KeyError(gateway)
+
+
+def linked(faces: tuple[Face, ...], out: int, arrival: int, star: Face | None) -> tuple[Face, ...]:
+    """The faces after a link between two pending gateways; ``star`` is the place of the second one,
+    its gateways counter-clockwise, if that is new. A link inside a face splits it, and one between
+    two faces makes them one."""
+    here = face_of(faces, out)
+    rest = after(here, out)
+    others = [face for face in faces if face is not here]
+    if star is not None:
+        return (after(star, arrival) + rest, *others)
+    if arrival in rest:
+        middle = rest.index(arrival)
+        return (rest[:middle], rest[middle + 1 :], *others)
+    there = face_of(others, arrival)
+    others.remove(there)
+    return (rest + after(there, arrival), *others)
 
 
 def after(face: Face, gateway: int) -> Face:

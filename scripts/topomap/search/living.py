@@ -18,7 +18,7 @@ from typing import Any
 from topomap.model.exceptions import NamedException, named_exceptions
 from topomap.model.experience import DState, Experience, Step
 from topomap.model.topology import TopologicalMap
-from topomap.search.hypothesis import Face, after
+from topomap.search.hypothesis import Face, face_of, linked
 
 Track = tuple[int, int, int, int]  # where a row of shifts began; where it is by these; how long
 Sides = tuple[int, int, int, int]
@@ -300,7 +300,7 @@ class Form:
 
     def face(self, gateway: int) -> Face:
         """The face on which a pending gateway lies."""
-        return next(face for face in self.faces if gateway in face)
+        return face_of(self.faces, gateway)
 
     def component(self, place: int) -> int:
         """The component of the map in which a place is, named by one of its places."""
@@ -331,20 +331,10 @@ class Form:
         """The map with the link that a step makes."""
         form = Form(self)
         place = arrival // told.slots
-        here = self.face(out)
-        rest = after(here, out)
-        others = [face for face in self.faces if face is not here]
-        if place == step:
-            star = told.star(step)
+        star = told.star(step) if place == step else None
+        if star:
             form._add_place(step, star)
-            form.faces = (after(star.face, arrival) + rest, *others)
-        elif arrival in rest:
-            middle = rest.index(arrival)
-            form.faces = (rest[:middle], rest[middle + 1 :], *others)
-        else:
-            there = self.face(arrival)
-            others.remove(there)
-            form.faces = (rest + after(there, arrival), *others)
+        form.faces = linked(self.faces, out, arrival, star.face if star else None)
         parts = self.component(out // told.slots), self.component(place)
         if parts[0] != parts[1]:
             form.part = {**self.part, parts[1]: parts[0]}

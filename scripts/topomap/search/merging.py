@@ -50,16 +50,16 @@ def refusal(experience: Experience, query: Query) -> str | None:
     """Why maps cannot be counted by merging, or None."""
     asked = query.parts - PARTS
     if asked:
-        return f"{min(asked)}: maps that are asked for it hardly merge"
+        return f"{min(asked)} (only closed, perpendicular, a bound and a horizon may be asked for)"
     if experience.parted:
         return "several logs, or second looks"
     told = {
         "a marker": experience.names(),
         "odometry": experience.shifts,
         "lengths": experience.lengths,
-        "visits known to be of one place": experience.same,
-        "visits known to be of two places": experience.apart,
-        "statements that are taken for granted": experience.assumed,
+        "visits told to be of one place (same/2, or assumed)": experience.same,
+        "visits told to be of two places (apart/2, or assumed)": experience.apart,
+        "statements that are taken for granted (assume)": experience.assumed,
         "bearings that are not exact": experience.tolerance,
     }
     for what, known in told.items():

@@ -150,14 +150,14 @@ def hypotheses(
     if trial.rest:
         yield from trial.rest
         return
-    best = trial.maps[-1:]
+    best = trial.maps[-1:]  # an open one only as long as no closed map is found
     if best:
         watch.by, watch.least = SEARCH, trial.least
         yield from best
     if trial.fault:
         raise Stopped(trial.fault)
     for found in solving.hypotheses(experience, query, watch, kind):
-        better = not best or (found and (found.kind != best[0].kind or found.cost < best[0].cost))
+        better = not best or (found and (best[0].open or found.cost < best[0].cost))
         if not found or found.proved or better:
             watch.by, watch.least = CLINGO, trial.least
             yield found

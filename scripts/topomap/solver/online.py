@@ -19,12 +19,11 @@ from topomap.model.compact import CompactMap, Numbering
 from topomap.model.exceptions import NamedException, exceptions_of
 from topomap.model.experience import DState, Experience, Step
 from topomap.model.found import UNPROVED
-from topomap.runtime.limits import DRIFT, MOST_COUNTED, STRETCH
 from topomap.runtime.watch import Attempt, Watch
 from topomap.search.certainty import Certain, Certainty
 from topomap.search.hypothesis import OFTEN
 from topomap.search.living import Living, Told, Tree
-from topomap.solver.stepwise import MAPS, Stepwise
+from topomap.solver.stepwise import MAPS, Asked, Stepwise
 
 LIVING = 200_000  # places of all the hypotheses together, each of which is kept with its map
 FEWER = 4  # times fewer than these there are to be, before clingo is asked no longer
@@ -122,6 +121,9 @@ class Status:
         return tuple(one.at for one in self.maps)
 
 
+EVERY = Asked()  # all hypotheses
+
+
 class OnlineSolver:
     """An exploration that goes on, from its start; steps can be taken back."""
 
@@ -129,24 +131,17 @@ class OnlineSolver:
         self,
         slots: int,
         first: Step,
-        planar: bool = False,
-        bound: int | None = None,
-        most: int = MOST_COUNTED,
-        drift: int = DRIFT,
-        stretch: int = STRETCH,
-        tolerance: int = 0,
-        path_axiom: bool = True,
+        asked: Asked = EVERY,
         living: int = LIVING,
         most_atoms: int = MOST_ATOMS,
     ):
-        """Begin where the first view was seen; ``drift`` and ``stretch`` tell, in percent, how far
-        shifts and lengths may be wrong, and ``tolerance``, in slots, how far bearings may be. If
-        the hypotheses have more than ``living`` places, clingo is asked (from the start, if that is
-        0), until its program has more than ``most_atoms`` atoms."""
-        self.told = Told(slots, first, drift, stretch, tolerance)
-        self.most, self._living, self._most_atoms = most, living, most_atoms
-        self._asked = planar, bound, most, drift, stretch, tolerance, path_axiom
-        self._tree = Tree(self.told, planar, bound, path_axiom)
+        """Begin where the first view was seen. If the hypotheses have more than ``living`` places,
+        clingo is asked (from the start, if that is 0), until its program has more than
+        ``most_atoms`` atoms."""
+        self.told = Told(slots, first, asked.drift, asked.stretch, asked.tolerance)
+        self.most, self._living, self._most_atoms = asked.most, living, most_atoms
+        self._asked = asked
+        self._tree = Tree(self.told, asked.planar, asked.bound, asked.path_axiom)
         self._rules: Stepwise | None = None
         self._searching = living > 0
         self._large: int | None = None  # the step after which clingo's program was too large
@@ -339,7 +334,7 @@ class OnlineSolver:
         if self._searching or self._some:
             return None
         if self._rules is None:
-            self._rules = Stepwise(told.slots, told.steps[0], *self._asked)
+            self._rules = Stepwise(told.slots, told.steps[0], self._asked)
             self._rules.begin([tuple(one.visit.gateways()) for one in self._whole[1]])
         rules = self._rules
         while rules.size <= self._most_atoms:

@@ -9,7 +9,7 @@ from operator import itemgetter
 import clingo
 
 from topomap.model.experience import Experience, Misread
-from topomap.model.found import OPEN, Cube, Found
+from topomap.model.found import BEST_SO_FAR, OPTIMAL, Cube, Found
 from topomap.model.query import Query
 from topomap.model.vocabulary import CHOSEN
 from topomap.runtime.folders import ENCODINGS
@@ -108,14 +108,14 @@ def best(
             return
         least = cheapest.cost[:2]
         query = replace(query, noise=least[0])
-    for kind, closed in (("optimal", ("closed",)), (OPEN, ())):
+    for kind, closed in ((OPTIMAL, ("closed",)), (BEST_SO_FAR, ())):
         for preferred, before in preferences(query):
             some = False
             asked = query.having(*closed, preferred, "minimal")
             try:
                 for found in way(experience, asked, watch, kind):
                     if found and found.cost[: len(least)] == least:
-                        some = True
+                        some = some or not found.open  # an open map does not end the search
                         rest = found.cost[len(least) :]
                         yield replace(found, cost=(*least, *before, *rest))
             finally:

@@ -8,6 +8,7 @@ a step before.
 """
 
 from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
 from itertools import islice
 from typing import Any
 
@@ -28,25 +29,30 @@ TRIED = 10  # times as many nodes are visited to tell that there are more
 MAPS = 100  # best maps that are kept
 
 
+@dataclass(frozen=True)
+class Asked:
+    """Which hypotheses are asked for, and how exact what is told of them is.
+
+    ``most`` is how many hypotheses are counted. ``drift`` and ``stretch`` tell, in percent, how far
+    shifts and lengths may be wrong, and ``tolerance``, in slots, how far bearings may be.
+    """
+
+    planar: bool = False
+    bound: int | None = None
+    most: int = MOST_COUNTED
+    drift: int = DRIFT
+    stretch: int = STRETCH
+    tolerance: int = 0
+    path_axiom: bool = True
+
+
 class Stepwise:
     """An exploration that goes on, from its start; steps can be taken back."""
 
-    def __init__(
-        self,
-        slots: int,
-        first: Step,
-        planar: bool = False,
-        bound: int | None = None,
-        most: int = MOST_COUNTED,
-        drift: int = DRIFT,
-        stretch: int = STRETCH,
-        tolerance: int = 0,
-        path_axiom: bool = True,
-    ):
-        """Begin where the first view was seen; ``drift`` and ``stretch`` tell, in percent, how far
-        shifts and lengths may be wrong, and ``tolerance``, in slots, how far bearings may be.
+    def __init__(self, slots: int, first: Step, asked: Asked):
+        """Begin where the first view was seen.
 
-        Without the ``path_axiom``, or where it is told which gateways are on one path, the best
+        Without the path axiom, or where it is told which gateways are on one path, the best
         maps are found anew after each step, as the program does not tell the number of paths then,
         or what is left and right of them. Where bearings are not exact, there is no program: the
         hypotheses are those of the search."""
@@ -59,19 +65,28 @@ class Stepwise:
             *marked,
             compass=[first.compass],
             things=[(kind, 0, name) for kind, name in first.things],
-            drift=drift,
-            stretch=stretch,
-            tolerance=tolerance,
+            drift=asked.drift,
+            stretch=asked.stretch,
+            tolerance=asked.tolerance,
             straight=[] if first.straight is None else [first.straight],
         )
-        self.most = most
-        asked = {"planar": planar, "no_path_axiom": not path_axiom}
-        self._query = Query(frozenset(part for part, wanted in asked.items() if wanted), bound)
-        self._parts = ["step", *(["planar"] if planar else [])]
-        arguments = ["0", "--project", "-c", f"drift={drift}", "-c", f"stretch={stretch}"]
-        if bound is not None:
+        self.most = asked.most
+        parts = {"planar": asked.planar, "no_path_axiom": not asked.path_axiom}
+        self._query = Query(
+            frozenset(part for part, wanted in parts.items() if wanted), asked.bound
+        )
+        self._parts = ["step", *(["planar"] if asked.planar else [])]
+        arguments = [
+            "0",
+            "--project",
+            "-c",
+            f"drift={asked.drift}",
+            "-c",
+            f"stretch={asked.stretch}",
+        ]
+        if asked.bound is not None:
             self._parts.append("bound")
-            arguments += ["-c", f"places={bound}"]
+            arguments += ["-c", f"places={asked.bound}"]
         self._control = clingo.Control(arguments)
         self._control.load(str(ENCODINGS / "online.lp"))
         self._control.load(str(ENCODINGS / "online/certain.lp"))
@@ -79,7 +94,7 @@ class Stepwise:
         self._control.register_propagator(self._boundaries)
         # no_path_axiom.lp demands an entry of topomap.lp, and is not loaded.
         told = "straight_told. " * bool(self.experience.straight)
-        told += "no_path_axiom. " * (not path_axiom)
+        told += "no_path_axiom. " * (not asked.path_axiom)
         self._control.add("base", [], f"online. slots({slots}). {told}#external consistent.")
         self.visits: list[int] = []  # the number of each step in the program
         self._numbered = 0
