@@ -458,7 +458,7 @@ def test_what_the_yaml_file_says(tmp_path):
     assert by_ends(plan(yaml_file(tmp_path, image="below/deep.png"))) == usual
     seen = np.full((*free.shape, 4), 255, np.uint8)
     seen[..., 3] = np.where(free, 255, 0)
-    Image.fromarray(seen, "RGBA").save(below / "seen.png")
+    Image.fromarray(seen).save(below / "seen.png")
     assert by_ends(plan(yaml_file(tmp_path, image="below/seen.png"))) == usual
     turned = plan(map_file(tmp_path, free, origin=f"[0, 0, {math.pi / 2}]"))
     straight = plan(map_file(tmp_path, free, origin="[0, 0, 0]"))
