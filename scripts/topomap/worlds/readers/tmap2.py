@@ -29,7 +29,7 @@ from topomap.worlds.readers.common import (
 )
 
 DEEPEST = 50
-MOST_BYTES = 2**24
+MOST_BYTES = 2**25
 MOST_VALUES = 5 * 10**6  # where each alias counts as what it stands for
 _NODES = re.compile(rb"""^(?:["']?nodes["']?\s*:|-\s+["']?(?:meta|node)["']?\s*:)""", re.MULTILINE)
 
