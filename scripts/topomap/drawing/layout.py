@@ -15,8 +15,9 @@ from scipy import sparse
 from scipy.sparse import linalg
 
 from topomap.drawing.bent import STEPS, bent
+from topomap.drawing.clearance import under
 from topomap.drawing.mesh import Points, TooLong, cross, faces_of
-from topomap.drawing.plain import NOTE, plain
+from topomap.drawing.plain import NOTE, UNDER, plain
 from topomap.drawing.planarize import left_out, planar_part, routed
 from topomap.drawing.springs import STUB
 from topomap.model.topology import Gateway, Place, TopologicalMap
@@ -68,7 +69,8 @@ def layout(
             lines = bent(*routed(part, left_out(part, world), late), steps, late)
     except TooLong:
         lines = plain(world, STUB)
-        return replace(_turned(world, lines, ahead), note=NOTE)
+        note = f"{NOTE}, and {UNDER}" if under(world, lines) else NOTE
+        return replace(_turned(world, lines, ahead), note=note)
     return _layout(world, part, lines, ahead)
 
 
@@ -198,7 +200,7 @@ def _by_compass(world: TopologicalMap, late: Late = never) -> dict[Gateway, Poin
         off = np.linalg.norm(side - far[:, None] * along, axis=1)
         if (far >= SHORTEST).all() and (off <= 0.01 * SHORTEST).all():
             lines = _lines(world, north, dict(zip(number, found, strict=True)))
-            if not _meet(world, lines):
+            if not _meet(world, lines) and not under(world, lines):
                 return lines
         if late():
             break

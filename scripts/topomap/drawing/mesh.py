@@ -14,6 +14,7 @@ from topomap.runtime.watch import Late, never
 Points = NDArray[np.float64]
 Numbers = NDArray[np.int64]
 BENDS = 5  # inner points of a link that is not straight
+PASSING = 3  # of a piece of one that goes to a crossing
 
 
 class TooLong(Exception):
@@ -48,9 +49,9 @@ def cross(u: Points, v: Points) -> Points:
 class Mesh:
     """Points by number: places, ends and bends of lines, then those that are not drawn; and the
     triangles between them, counter-clockwise. ``rim`` are the points of the outline, fixed on a
-    circle."""
+    circle. A ``fine`` mesh has so many times as many bends."""
 
-    def __init__(self, world: TopologicalMap, crossings: list[Place]) -> None:
+    def __init__(self, world: TopologicalMap, crossings: list[Place], fine: int = 1) -> None:
         self.world, self.crossings = world, crossings
         faces, outer = faces_of(world)
         self.size = 0
@@ -62,7 +63,7 @@ class Mesh:
             if end is None:
                 self.lines[gateway] = [start, self._point()]
             elif gateway not in self.lines:
-                inner = 2 if {gateway[0], end[0]} & set(crossings) else BENDS
+                inner = fine * (PASSING if {gateway[0], end[0]} & set(crossings) else BENDS)
                 line = [start, *(self._point() for _ in range(inner)), self.place[end[0]]]
                 self.lines[gateway], self.lines[end] = line, line[::-1]
         triangles = []

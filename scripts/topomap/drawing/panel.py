@@ -12,6 +12,7 @@ from matplotlib.patches import Circle, PathPatch, Polygon
 from matplotlib.path import Path as Outline
 from scipy.spatial import KDTree
 
+from topomap.drawing.clearance import RADIUS
 from topomap.drawing.labels import gaps
 from topomap.drawing.layout import Layout, layout
 from topomap.drawing.mesh import Points
@@ -22,7 +23,6 @@ from topomap.model.topology import Gateway, Place, TopologicalMap, gid, label
 INK, LINK, CROSSING, PENDING = "#1b1b1b", "#3d4a57", "#c2332d", "#2f7fc1"
 AGENT, SIGN, SIGNED, STEP = "#e07b00", "#2e7d4f", "#e7f5ea", "#5c6670"
 FACES = ("#dfeaf3", "#f6ead9", "#e3f0e0", "#efe3ef", "#f3f0d8", "#dff0ee")
-RADIUS = 0.15  # of a place's circle, where a link is of length 1
 BESIDE = 0.15  # a text on the right of a line; what is farther from it is not near
 DASHES: Any = (0, (4, 2))
 UNIT = 0.8  # inches that a link of length 1 takes

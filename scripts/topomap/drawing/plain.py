@@ -1,14 +1,17 @@
 """Plain drawings, which take little time: places about as far from each other as they are in the
 map, and lines straight from one to the other. Lines leave each place in their order, but may cross
-where they need not."""
+where they need not; they are led round the places that they would pass under."""
+
+from collections.abc import Mapping
 
 import numpy as np
 from scipy import linalg, sparse
 from scipy.sparse import csgraph
 from scipy.spatial import KDTree
 
+from topomap.drawing.clearance import CLEAR, passing
 from topomap.drawing.mesh import Points
-from topomap.model.topology import Gateway, TopologicalMap
+from topomap.model.topology import Gateway, Place, TopologicalMap
 
 ROUNDS = 60  # in which places are moved to where their distances are nearer to what they should be
 WORK = 2_000_000  # distances that are looked at in all rounds
@@ -17,7 +20,9 @@ NEAREST = 0.6  # that places may be
 PUSHES = 200  # times at most that places are pushed apart
 STEM = 0.3  # the length of a line's first piece
 MOST_TURN = np.pi / 2.4  # between a line's first piece and where it goes; else it goes round
+DETOURS, AROUND = 30, 1.2  # at most, of a line; how far from a place, in least distances
 NOTE = "drawn plainly, as a better drawing takes too long"
+UNDER = "links pass under places"
 
 
 def plain(world: TopologicalMap, stub: float) -> dict[Gateway, Points]:
@@ -47,6 +52,34 @@ def plain(world: TopologicalMap, stub: float) -> dict[Gateway, Points]:
                 line = [here, *leaving, *_stem(there, back, here)[::-1], there]
             lines[gateway] = np.array(line)
             lines[other] = lines[gateway][::-1]
+    return _led_round(world, dict(zip(number, points, strict=True)), lines)
+
+
+def _led_round(
+    world: TopologicalMap, places: Mapping[Place, Points], lines: dict[Gateway, Points]
+) -> dict[Gateway, Points]:
+    """The lines, led round the places that they would pass under; their first and last pieces stay
+    as they are, so each still leaves by its gateway."""
+    once = [out for out, _ in world.edges()]
+    ends = [{out[0], world.links[out][0]} for out in once]
+    for _ in range(DETOURS):
+        met = passing(places, list(zip(ends, (lines[out] for out in once), strict=True)))
+        led: set[int] = set()
+        for number, piece, place in met:
+            line = lines[once[number]]
+            if number in led or not 0 < piece < len(line) - 2:
+                continue
+            led.add(number)
+            a, b = line[piece], line[piece + 1]
+            way = (b - a) / max(1e-9, float(np.hypot(*(b - a))))
+            aside = np.array([-way[1], way[0]])
+            side = np.copysign(1.0, (a - places[place]) @ aside)
+            spot = places[place] + side * AROUND * CLEAR * aside
+            out = once[number]
+            lines[out] = np.insert(line, piece + 1, spot, axis=0)
+            lines[world.links[out]] = lines[out][::-1]
+        if not led:
+            break
     return lines
 
 

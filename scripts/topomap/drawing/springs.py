@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from scipy.spatial import KDTree
 
-from topomap.drawing.mesh import BENDS, Mesh, Numbers, Points, cross
+from topomap.drawing.mesh import Mesh, Numbers, Points, cross
 
 # Terms f(y) of an energy, where y depends on some of the numbers x: which these are, dy/dx of each
 # of them, f'(y), and f''(y) or 0 if that is negative. A column for each of the terms of a kind.
@@ -49,10 +49,11 @@ class Springs:
         lines.sort(key=lambda line: line[0] >= self.places)  # those that leave crossings last
         sides += [(*line[:2], FIRST) for line in lines]
         firm = sum(side[0] < self.places for side in sides)
+        crossed = {mesh.place[place] for place in mesh.crossings}
         for gateway, _ in world.edges():
             line = mesh.lines[gateway]
             weak = line[0] == line[-1]  # a loop cannot but bend
-            whole = LOOP if weak else 1.0 if len(line) == BENDS + 2 else PIECE
+            whole = LOOP if weak else PIECE if {line[0], line[-1]} & crossed else 1.0
             rest = (whole - 2 * FIRST) / (len(line) - 3)
             sides += [(a, b, rest) for a, b in pairwise(line[1:-1])]
             bends += [(*three, weak) for three in zip(line, line[1:], line[2:], strict=False)]
