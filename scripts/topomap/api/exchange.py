@@ -16,7 +16,7 @@ def exported(scene: Scene, form: str, late: Late = never) -> tuple[str, str]:
         return WRITERS[form](scene), ""
     from topomap.drawing.layout import layout
 
-    laid = layout(scene.world, scene.ahead, late=late)
+    laid = layout(scene.world, scene.ahead, late=late, where=scene.where())
     return DRAWN[form](scene, laid), laid.note
 
 

@@ -5,7 +5,7 @@ triangle is folded, and is bent towards a good shape (``springs``) by steps that
 nothing comes to cross and every rotation stays right.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from typing import Any
 
@@ -45,25 +45,27 @@ PIVOTS: Any = {"diag_pivot_thresh": 0.0, "options": {"SymmetricMode": True}}
 
 
 def bent(
-    world: TopologicalMap, crossings: list[Place], steps: int, late: Late = never
+    world: TopologicalMap,
+    crossings: list[Place],
+    steps: int,
+    late: Late = never,
+    known: Mapping[Place, Points] | None = None,
 ) -> dict[Gateway, Points]:
     """Lines with bends, in a drawing in which no triangle of the mesh is folded; they go on
-    straight through the crossings. If a line passes under a place, more bends are tried. Raises
-    TooLong if the drawing is not legible when the time is over."""
-    mesh, x = _drawn(world, crossings, steps, 1, late)
+    straight through the crossings; places are near to where they are ``known`` to be. If a line
+    passes under a place, more bends are tried. Raises TooLong if the drawing is not legible when
+    the time is over."""
+    mesh, x = _drawn(Mesh(world, crossings, 1, known), steps, late)
     if steps >= STEPS and not late() and mesh.size <= FINE and not _clear(mesh, x):
         with suppress(TooLong):
-            finer, y = _drawn(world, crossings, steps, 2, late)
+            finer, y = _drawn(Mesh(world, crossings, 2, known), steps, late)
             if len(_under(finer, y)) < len(_under(mesh, x)):
                 mesh, x = finer, y
     return _lines(mesh, x)
 
 
-def _drawn(
-    world: TopologicalMap, crossings: list[Place], steps: int, fine: int, late: Late
-) -> tuple[Mesh, Points]:
+def _drawn(mesh: Mesh, steps: int, late: Late) -> tuple[Mesh, Points]:
     """A mesh, and its numbers in a good drawing."""
-    mesh = Mesh(world, crossings, fine)
     if mesh.size > MOST_POINTS or late():
         raise TooLong
     points = mesh.start(late)

@@ -3,7 +3,9 @@
 A map of genus 0 is drawn without crossings; of one of higher genus a planar part is, and the
 other links are led through its faces, across as few links as can be. Around each place the
 gateways leave in their order, clockwise as the agent turns. If all links can be straight and in
-the directions of one compass, they are. What takes too long is drawn plainly, and says so.
+the directions of one compass, they are. If it is known where places are, they are drawn there, or
+as near as can be without a crossing, and north is up. What takes too long is drawn plainly, and
+says so.
 """
 
 import random
@@ -16,9 +18,11 @@ from scipy.sparse import linalg
 
 from topomap.drawing.bent import STEPS, bent
 from topomap.drawing.clearance import under
-from topomap.drawing.mesh import Points, TooLong, cross, faces_of
+from topomap.drawing.mesh import Points, TooLong, cross, faces_of, outer_of
+from topomap.drawing.placed import ALIKE, Targets, at_their_places, difference, targets, turned
 from topomap.drawing.plain import NOTE, UNDER, plain
 from topomap.drawing.planarize import left_out, planar_part, routed
+from topomap.drawing.scenes import Where
 from topomap.drawing.springs import STUB
 from topomap.model.topology import Gateway, Place, TopologicalMap
 from topomap.runtime.watch import Late, never
@@ -26,6 +30,8 @@ from topomap.runtime.watch import Late, never
 GAP = 1.0  # between components
 SHORTEST = 0.4  # link in a drawing by the compass
 NARROW = 0.05  # that lines may be to each other in it
+DISTORTED = 0.5  # the difference of a shape from what is known, in characters
+QUARTER = [np.array([[x, y], [-y, x]], float) for x, y in ((1, 0), (0, 1), (-1, 0), (0, -1))]
 TRIES, LENGTHS = 150, (1, 1, 1, 2, 3)  # of other drawings, and of links in them
 
 
@@ -53,35 +59,60 @@ class Layout:
 
 
 def layout(
-    world: TopologicalMap, ahead: Gateway | None = None, steps: int = STEPS, late: Late = never
+    world: TopologicalMap,
+    ahead: Gateway | None = None,
+    steps: int = STEPS,
+    late: Late = never,
+    where: Where | None = None,
 ) -> Layout:
-    """A drawing of a map. ``ahead`` is a gateway that is left to the right of the
+    """A drawing of a map. ``where`` tells where places are, and what is up; where that is not known
+    of all places, ``ahead`` is a gateway that is left to the right of the
     picture (else the first one); fewer ``steps`` do for a small picture. Several components stand
     side by side, and then no faces are told, for they share the outer one. The drawing is plain if
     it is ``late`` before there is a better one, or if that takes more work than one drawing may."""
     parts = world.parts()
     if len(parts) > 1:
-        return _beside([layout(part, _there(ahead, part), steps, late) for part in parts])
+        return _beside([layout(part, _there(ahead, part), steps, late, where) for part in parts])
+    known = targets(world, where)
     try:
         part = planar_part(world, late=late)
-        lines = _by_compass(part, late) if part is world else None
-        if lines is None:
-            lines = bent(*routed(part, left_out(part, world), late), steps, late)
+        placed = _placed(part, known, late) if part is world else None
+        if placed is not None:
+            lines = placed
+        else:
+            lines = bent(*routed(part, left_out(part, world), late), steps, late, known)
     except TooLong:
-        lines = plain(world, STUB)
+        lines = plain(world, STUB, known)
         note = f"{NOTE}, and {UNDER}" if under(world, lines) else NOTE
-        return replace(_turned(world, lines, ahead), note=note)
-    return _layout(world, part, lines, ahead)
+        return replace(_turned(world, lines, ahead, known), note=note)
+    return _layout(world, part, lines, ahead, known)
+
+
+def _placed(
+    world: TopologicalMap, known: Targets | None, late: Late
+) -> dict[Gateway, Points] | None:
+    """Straight lines: between places where they are known to be, or by the compass, if places are
+    then about there."""
+    for placed in at_their_places(world, known) if known else ():
+        if not _meet(world, placed) and not under(world, placed):
+            return placed
+    lines = _by_compass(world, late)
+    if lines and known and difference(lines, known) > ALIKE:
+        return None
+    return lines
 
 
 def straight(
-    world: TopologicalMap, ahead: Gateway | None = None, late: Late = never
+    world: TopologicalMap,
+    ahead: Gateway | None = None,
+    late: Late = never,
+    where: Where | None = None,
 ) -> Layout | None:
     """A drawing by the compass, if there is one; of the links that are not in the planar part
-    only the beginning and the end, as stubs."""
+    only the beginning and the end, as stubs. It is turned by quarters only."""
     parts = world.parts()
     if len(parts) > 1:
-        drawn = [straight(part, _there(ahead, part), late) for part in parts]
+        drawn = [straight(part, _there(ahead, part), late, where) for part in parts]
         laid = [one for one in drawn if one is not None]
         return _beside(laid) if len(laid) == len(parts) else None
     try:
@@ -89,7 +120,22 @@ def straight(
     except TooLong:
         return None
     lines = _by_compass(part, late)
-    return None if lines is None else _layout(world, part, lines, ahead)
+    known = targets(world, where)
+    if lines is None or (known and difference(lines, known) > DISTORTED):
+        return None
+    if known:  # from the way ahead to the right, on by quarters to where it should be
+        level = _turned(world, lines, ahead, None).lines
+        x, y = _way(turned(level, known), ahead)
+        quarters = round(float(np.arctan2(y, x)) / (np.pi / 2)) % 4
+        lines = {out: line @ QUARTER[quarters] for out, line in level.items()}
+        known = {out[0]: line[0] for out, line in lines.items()}
+    return _layout(world, part, lines, ahead, known)
+
+
+def _way(lines: Mapping[Gateway, Points], ahead: Gateway | None) -> Points:
+    """The direction of a line, of the first one if none is named."""
+    line = lines[ahead or next(iter(lines))]
+    return np.asarray(line[1] - line[0])
 
 
 def _there(gateway: Gateway | None, part: TopologicalMap) -> Gateway | None:
@@ -119,21 +165,31 @@ def _layout(
     part: TopologicalMap,
     lines: Mapping[Gateway, Points],
     ahead: Gateway | None,
+    known: Targets | None,
 ) -> Layout:
     """The drawing, with what it shows of the map."""
     crossing = left_out(part, world)
     faces, outer = ([], -1) if crossing else faces_of(world)
-    laid = _turned(world, lines, ahead)
+    laid = _turned(world, lines, ahead, known)
+    if known and world.links and not crossing:
+        outer = outer_of([laid.outline(face) for face in faces])
     return replace(laid, faces=faces, outer=outer, crossing=crossing)
 
 
 def _turned(
-    world: TopologicalMap, lines: Mapping[Gateway, Points], ahead: Gateway | None
+    world: TopologicalMap,
+    lines: Mapping[Gateway, Points],
+    ahead: Gateway | None,
+    known: Targets | None,
 ) -> Layout:
-    """Places and lines, turned so that ``ahead`` leads to the right."""
+    """Places and lines, turned so that places are where they are known to be as nearly as can be,
+    or else so that ``ahead`` leads to the right."""
     first = ahead or next(world.gateways(), None)
     if first is None:
         return Layout({place: np.zeros(2) for place in world.stars}, {}, [], -1, [])
+    if known:
+        lines = turned(lines, known)
+        return Layout({out[0]: line[0] for out, line in lines.items()}, {**lines}, [], -1, [])
     x, y = lines[first][1] - lines[first][0]
     turn = np.array([[x, -y], [y, x]]) / np.hypot(x, y)
     lines = {gateway: line @ turn for gateway, line in lines.items()}

@@ -39,7 +39,7 @@ def draw(
     that cross others the faces are not drawn: those of the planar part are not the map's."""
     world = scene.world
     at = scene.at
-    laid = laid or layout(world, scene.ahead)
+    laid = laid or layout(world, scene.ahead, where=scene.where())
     for gateway, line in laid.lines.items():
         _draw_line(axes, world, laid, gateway, line)
     for place, point in laid.places.items():

@@ -25,11 +25,16 @@ NOTE = "drawn plainly, as a better drawing takes too long"
 UNDER = "links pass under places"
 
 
-def plain(world: TopologicalMap, stub: float) -> dict[Gateway, Points]:
-    """The lines of a map of one component; of a place without gateways there are none."""
+def plain(
+    world: TopologicalMap, stub: float, known: Mapping[Place, Points] | None = None
+) -> dict[Gateway, Points]:
+    """The lines of a map of one component; of a place without gateways there are none. Places are
+    about where they are ``known`` to be, if they are."""
     number = {place: n for n, place in enumerate(world.stars)}
     pairs = [(number[p], number[q]) for (p, _), (q, _) in world.edges() if p != q]
-    points = _points(len(number), pairs)
+    points = (
+        _points(len(number), pairs) if known is None else pushed_apart(np.array([*known.values()]))
+    )
     ends = [(number[p], number[world.links[p, s][0]], s) for p, s in world.links if (p, s)]
     norths = _norths(points, [end for end in ends if end[0] != end[1]], world.slots)
     turn = 2 * np.pi / world.slots
@@ -113,8 +118,7 @@ def _norths(points: Points, ends: list[tuple[int, int, int]], slots: int) -> Poi
 def _points(many: int, pairs: list[tuple[int, int]]) -> Points:
     """Points whose distances are about the numbers of links between them, by stress majorization
     (Gansner, Koren and North 2004); or points on a circle. None are too close to each other."""
-    turn = 2 * np.pi * np.arange(many) / many
-    circle = max(1, many * NEAREST / 5) * np.stack([np.cos(turn), np.sin(turn)], 1)
+    circle = _circle(many)
     if many < 3 or many > MOST_PLACES:
         return circle
     one, other = np.array(pairs).T
@@ -132,6 +136,16 @@ def _points(many: int, pairs: list[tuple[int, int]]) -> Points:
         ratio = weight * far / np.maximum(apart, 1e-3)
         points = factor @ (ratio.sum(1)[:, None] * points - ratio @ points + points)
     return _pushed(points, circle)
+
+
+def pushed_apart(points: Points) -> Points:
+    """Points where they are, but for those that are too close to each other."""
+    return _pushed(points, _circle(len(points)))
+
+
+def _circle(many: int) -> Points:
+    turn = 2 * np.pi * np.arange(many) / many
+    return max(1, many * NEAREST / 5) * np.stack([np.cos(turn), np.sin(turn)], 1)
 
 
 def _scaled(far: Points, many: int) -> Points:
