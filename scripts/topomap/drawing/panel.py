@@ -28,6 +28,7 @@ DASHES: Any = (0, (4, 2))
 UNIT = 0.8  # inches that a link of length 1 takes
 MARGIN = 0.35  # round all lines
 TITLE = 9  # points
+LETTERS = 5  # of a line of the name of a place, if that is longer but not too long
 
 Box = tuple[float, float, float, float]  # left, bottom, right, top
 
@@ -182,8 +183,9 @@ def _draw_place(
         style: Any = {"ec": INK, "lw": 3, "capstyle": "butt", "zorder": 4.2}
         axes.add_patch(PathPatch(path, fill=False, **style, gid=f"ticks-{name}"))
     x, y = point
-    size = min(7.0, 18 / len(name))
-    axes.text(x, y, name, fontsize=size, ha="center", va="center", color=INK, zorder=5)
+    lines = words.wrapped(name, LETTERS if len(name) <= LETTERS**2 else len(name))
+    size = min(7.0, 18 / max(map(len, lines)), 18 / 1.2 / len(lines))
+    axes.text(x, y, "\n".join(lines), fontsize=size, ha="center", va="center", color=INK, zorder=5)
 
 
 def _out(line: Points) -> Points:
@@ -196,8 +198,10 @@ def _draw_signs(
 ) -> Box:
     """The landmarks of a place, in the widest gap between the lines that leave it; if the text
     covers something there, in that where it covers least. Returns where it is."""
-    text = words.signs(world.landmarks[place])
-    wide, high = extent(text, 7) / UNIT + 0.04, 7 * 1.2 / 72 / UNIT
+    lines = words.sign_lines(world.landmarks[place])
+    text = "\n".join(lines)
+    wide = max(extent(line, 7) for line in lines) / UNIT + 0.04
+    high = len(lines) * 7 * 1.2 / 72 / UNIT
     outs = (_out(laid.lines[place, slot]) for slot in world.stars[place])
     places: list[Box] = []
     for gap, middle in gaps([atan2(y, x) for x, y in outs]):

@@ -106,7 +106,8 @@ def _wide(text: str) -> int:
 
 def box_of(world: TopologicalMap, place: Place, point: Point) -> Box:
     """What the landmarks of a place cover, if they begin there."""
-    return (*point, _wide(words.signs(world.landmarks[place])), HIGH)
+    lines = words.sign_lines(world.landmarks[place])
+    return (*point, max(map(_wide, lines)), len(lines) * HIGH)
 
 
 def _taken(
