@@ -1,15 +1,17 @@
 """Whether lines pass under places that are none of their ends."""
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 
 import numpy as np
 from scipy.spatial import KDTree
 
-from topomap.drawing.mesh import Points
+from topomap.drawing.mesh import Points, cross
 from topomap.model.topology import Gateway, Place, TopologicalMap
 
 RADIUS = 0.15  # of a place's circle, where a link is of length 1
 CLEAR = RADIUS + 0.02  # the least distance of a line from the middle of a place that it passes by
+DETOURS = 60  # of the lines of a drawing, at most
+AROUND = 1.05, 1.2, 1.5  # how far from a place a detour may lead, in least distances
 Passing = tuple[int, int, Place]  # a line by its number, a piece of it, and the place
 
 
@@ -54,3 +56,63 @@ def under(
     places = {place: line[0] for (place, _), line in lines.items()}
     met = {(once[line], place) for line, _, place in passing(places, ends, clear)}
     return sorted(met, key=lambda one: (once.index(one[0]), str(one[1])))
+
+
+def led_round(world: TopologicalMap, lines: Mapping[Gateway, Points]) -> dict[Gateway, Points]:
+    """The lines of a drawn map, led round the places that they would pass under, where they then
+    cross nothing that they did not cross before. Their first and last pieces stay as they are."""
+    led = dict(lines)
+    once = [out for out, _ in world.edges() if out in lines]
+    ends = [{out[0], world.links[out][0]} for out in once]
+    places = {place: line[0] for (place, _), line in lines.items()}
+    for _ in range(DETOURS):
+        met = passing(places, list(zip(ends, (led[out] for out in once), strict=True)))
+        done = False
+        for number, piece, place in met:
+            out = once[number]
+            line = led[out]
+            if not 0 < piece < len(line) - 2:
+                continue
+            a, b = line[piece], line[piece + 1]
+            others = np.concatenate(
+                [
+                    np.stack([one[:-1], one[1:]], 1)
+                    for end, one in led.items()
+                    if end not in (out, world.links[out])
+                ]
+                + [np.stack([line[:piece], line[1 : piece + 1]], 1)]
+                + [np.stack([line[piece + 1 : -1], line[piece + 2 :]], 1)]
+            )
+            for spot in _spots(a, b, places[place]):
+                if not _cross(a, spot, others) and not _cross(spot, b, others):
+                    led[out] = np.insert(line, piece + 1, spot, axis=0)
+                    led[world.links[out]] = led[out][::-1]
+                    done = True
+                    break
+            if done:
+                break
+        if not done:
+            break
+    return led
+
+
+def _spots(a: Points, b: Points, place: Points) -> Iterator[Points]:
+    """Points beside a place, by which a piece from one point to another may be led round it."""
+    way = (b - a) / max(1e-9, float(np.hypot(*(b - a))))
+    near = a + np.clip((place - a) @ way, 0, np.hypot(*(b - a))) * way
+    aside = near - place
+    far = float(np.hypot(*aside))
+    aside = aside / far if far > 1e-6 else np.array([-way[1], way[0]])
+    for angle in (0.0, 0.4, -0.4, 0.8, -0.8):
+        turn = np.array([[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]])
+        for times in AROUND:
+            yield place + times * CLEAR * (aside @ turn)
+
+
+def _cross(a: Points, b: Points, pieces: Points) -> bool:
+    """Whether a piece of a line meets any of others, but for those that begin or end with it."""
+    c, d = pieces[:, 0], pieces[:, 1]
+    shared = [(abs(p - q) < 1e-9).all(-1) for p in (a, b) for q in (c, d)]
+    side = cross(b - a, c - a) * cross(b - a, d - a)
+    over = cross(d - c, a - c) * cross(d - c, b - c)
+    return bool(((side <= 0) & (over <= 0) & ~np.any(shared, axis=0)).any())

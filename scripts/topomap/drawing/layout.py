@@ -17,7 +17,7 @@ from scipy import sparse
 from scipy.sparse import linalg
 
 from topomap.drawing.bent import STEPS, bent
-from topomap.drawing.clearance import under
+from topomap.drawing.clearance import led_round, under
 from topomap.drawing.mesh import Points, TooLong, cross, faces_of, outer_of
 from topomap.drawing.placed import ALIKE, Targets, at_their_places, difference, targets, turned
 from topomap.drawing.plain import NOTE, UNDER, plain
@@ -32,6 +32,7 @@ SHORTEST = 0.4  # link in a drawing by the compass
 NARROW = 0.05  # that lines may be to each other in it
 DISTORTED = 0.5  # the difference of a shape from what is known, in characters
 QUARTER = [np.array([[x, y], [-y, x]], float) for x, y in ((1, 0), (0, 1), (-1, 0), (0, -1))]
+ELSEWHERE = "some places are drawn elsewhere than they are"
 TRIES, LENGTHS = 150, (1, 1, 1, 2, 3)  # of other drawings, and of links in them
 
 
@@ -44,6 +45,7 @@ class Layout:
     gateways that its walk leaves by, the face on their right; ``outer``: the number of the outer
     one. ``crossing``: of another map the links that are not in the planar part. ``note`` says that
     the drawing is plain, if it is: then no faces are told, nor which links cross others.
+    ``elsewhere``: it is known where places are, but some are drawn elsewhere.
     """
 
     places: dict[Place, Points]
@@ -52,6 +54,7 @@ class Layout:
     outer: int
     crossing: list[tuple[Gateway, Gateway]]
     note: str = ""
+    elsewhere: bool = False
 
     def outline(self, face: list[Gateway]) -> Points:
         """The line round a face."""
@@ -81,6 +84,7 @@ def layout(
             lines = placed
         else:
             lines = bent(*routed(part, left_out(part, world), late), steps, late, known)
+            lines = led_round(world, lines)
     except TooLong:
         lines = plain(world, STUB, known)
         note = f"{NOTE}, and {UNDER}" if under(world, lines) else NOTE
@@ -128,8 +132,10 @@ def straight(
         x, y = _way(turned(level, known), ahead)
         quarters = round(float(np.arctan2(y, x)) / (np.pi / 2)) % 4
         lines = {out: line @ QUARTER[quarters] for out, line in level.items()}
-        known = {out[0]: line[0] for out, line in lines.items()}
-    return _layout(world, part, lines, ahead, known)
+        there = {out[0]: line[0] for out, line in lines.items()}
+        elsewhere = difference(lines, known) > ALIKE
+        return replace(_layout(world, part, lines, ahead, there), elsewhere=elsewhere)
+    return _layout(world, part, lines, ahead, None)
 
 
 def _way(lines: Mapping[Gateway, Points], ahead: Gateway | None) -> Points:
@@ -157,7 +163,7 @@ def _beside(drawings: Sequence[Layout]) -> Layout:
         crossing += laid.crossing
         right += points[:, 0].max() - points[:, 0].min() + GAP
     note = next((laid.note for laid in drawings if laid.note), "")
-    return Layout(places, lines, [], -1, crossing, note)
+    return Layout(places, lines, [], -1, crossing, note, any(one.elsewhere for one in drawings))
 
 
 def _layout(
@@ -189,7 +195,9 @@ def _turned(
         return Layout({place: np.zeros(2) for place in world.stars}, {}, [], -1, [])
     if known:
         lines = turned(lines, known)
-        return Layout({out[0]: line[0] for out, line in lines.items()}, {**lines}, [], -1, [])
+        elsewhere = difference(lines, known) > ALIKE
+        places = {out[0]: line[0] for out, line in lines.items()}
+        return Layout(places, {**lines}, [], -1, [], elsewhere=elsewhere)
     x, y = lines[first][1] - lines[first][0]
     turn = np.array([[x, -y], [y, x]]) / np.hypot(x, y)
     lines = {gateway: line @ turn for gateway, line in lines.items()}

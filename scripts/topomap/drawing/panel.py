@@ -14,7 +14,7 @@ from scipy.spatial import KDTree
 
 from topomap.drawing.clearance import RADIUS
 from topomap.drawing.labels import gaps
-from topomap.drawing.layout import Layout, layout
+from topomap.drawing.layout import ELSEWHERE, Layout, layout
 from topomap.drawing.mesh import Points
 from topomap.drawing.scenes import Scene
 from topomap.model import words
@@ -86,6 +86,7 @@ def title(scene: Scene, laid: Layout) -> str:
     count = len(laid.crossing)
     others = "1 link crosses others" if count == 1 else f"{count} links cross others"
     told = [scene.title, *[others] * bool(count), *[laid.note] * bool(laid.note)]
+    told += [ELSEWHERE] * laid.elsewhere
     return ", ".join(told)
 
 

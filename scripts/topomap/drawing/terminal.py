@@ -16,7 +16,7 @@ from string import ascii_letters
 
 import numpy as np
 
-from topomap.drawing.layout import Layout, layout, straight
+from topomap.drawing.layout import ELSEWHERE, Layout, layout, straight
 from topomap.drawing.mesh import Points
 from topomap.drawing.scenes import Scene
 from topomap.model.topology import Gateway, Place, gid, label
@@ -90,7 +90,7 @@ def drawn(scene: Scene, width: int, coloured: bool = False, late: Late = never) 
         laid, letters = layout(world, scene.ahead, late=late, where=where), {}
         canvas = dots(scene, laid, width)
     title, sizes = scene.title.rsplit("\n", 1)
-    sizes += f", {laid.note}" * bool(laid.note)
+    sizes += f", {laid.note}" * bool(laid.note) + f", {ELSEWHERE}" * laid.elsewhere
     told = [title, sizes, "", *canvas.lines(coloured), ""]
     for line in words(scene, laid, letters):
         told += textwrap.wrap(printable(line), width, subsequent_indent="    ")
