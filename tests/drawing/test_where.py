@@ -315,3 +315,11 @@ def test_a_world_that_is_another_is_said_in_one_line(town, tmp_path):
     assert picture.read_bytes() == usual
     missing = run(*call, "--like", tmp_path / "missing.graphml")
     assert (missing.returncode, len(missing.stderr.splitlines())) == (2, 1)
+
+
+def test_the_world_is_not_written_over(town):
+    file, explored_file, *_ = town
+    content = file.read_bytes()
+    done = run("topomap", "export", explored_file, "--format", "dot", "--like", file, "-o", file)
+    assert (done.returncode, len(done.stderr.splitlines())) == (2, 1)
+    assert file.read_bytes() == content
