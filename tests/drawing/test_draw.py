@@ -38,7 +38,7 @@ GRID = "instances/grid-3x3-snake.lp"
 NUMBER = r"-?\d+(?:\.\d+)?"
 RADIUS = panel.RADIUS * panel.UNIT * 72  # of a place, in the units of a picture
 ODD = ['"$x^$_{"', 'f("a$b")', '"日本"', '"\t"', f'"{"W" * 200}"', '"😀"', '"a\\"b"', '"$"']
-SHOWN = ["$x^$_{", 'f("a$b")', "日本", "\\t", "W" * 15 + "…", "😀", 'a"b', "$"]
+SHOWN = ["$x^$_{", 'f("a$b")', "日本", "\\t", "W" * 16, "😀", 'a"b', "$"]
 
 
 def some_map(number, *parts, steps=14):
@@ -443,7 +443,14 @@ def svg_texts(content):
 
 
 def test_landmarks_in_words():
-    assert [words.signs([sign]) for sign in ODD] == SHOWN
+    lines = [words.sign_lines([sign]) for sign in ODD]
+    assert [line[0] for line in lines] == SHOWN
+    assert "".join(lines[4]) == "W" * 200
+    assert words.signs([ODD[4]]) == "W" * 15 + "…"
+    assert words.sign_lines({'"Church of the Holy Sepulchre"'}) == [
+        "Church of the",
+        "Holy Sepulchre",
+    ]
     assert words.signs({'"red"', "blue"}) == "red, blue"
     assert words.signs({'"a b"', '"c"', '"d e f g h i j"'}) == "a b, c, d e f g…"
 

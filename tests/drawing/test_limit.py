@@ -18,8 +18,9 @@ from topomap.api.scenes import scenes_under
 from topomap.cli.scene import SEARCH
 from topomap.documents.answers import map_json
 from topomap.drawing import shapes
+from topomap.drawing.clearance import under
 from topomap.drawing.layout import layout, straight
-from topomap.drawing.plain import MOST_PLACES, NEAREST, NOTE, plain
+from topomap.drawing.plain import MOST_PLACES, NEAREST, NOTE, UNDER, plain
 from topomap.drawing.planarize import LINK_ORDERS, Walks, left_out, planar_part, routed
 from topomap.model.query import Query
 from topomap.model.topology import TopologicalMap
@@ -94,7 +95,9 @@ def test_a_plain_drawing_has_every_gateway_in_its_order(name):
         assert len(np.unique(line[:-1].round(6), axis=0)) == len(line) - 1
     for p, q in combinations(laid.places.values(), 2):
         assert np.linalg.norm(p - q) > 0.99 * NEAREST
-    assert laid.note in ("", NOTE)
+    met = under(world, laid.lines)
+    assert laid.note in (("", NOTE) if not met else (f"{NOTE}, and {UNDER}",))
+    assert len(met) <= 1
     if laid.note:  # then nothing is told of faces and crossings
         assert (laid.faces, laid.outer, laid.crossing) == ([], -1, [])
 

@@ -986,7 +986,9 @@ def test_no_text_is_cut_off(browser, tmp_path):
         return [texts.filter(([t]) => t.matches(".sign")).map(box), cut.map(box),
                 svg.getBoundingClientRect().width / frame.width, edges];"""
     )
-    assert [name for name, *_ in texts] == [words.signs([sign]) for sign in signs]
+    assert [name for name, *_ in texts] == [
+        line for sign in signs for line in words.sign_lines([sign])
+    ]
     assert not cut, (cut, frame)
     assert 1 < wide <= 1.71
     for (_, *one), (_, *other) in combinations(texts, 2):

@@ -502,7 +502,7 @@ def test_no_map_in_time_is_said_once(topomap):
 def test_places_that_are_drawn_close_together_make_no_endless_picture(monkeypatch):
     """Once such a map had lines of a hundred thousand characters."""
 
-    def close(made, ahead, late):
+    def close(made, ahead, late, where):
         laid = layout(made, ahead)
         laid.places.update(dict.fromkeys(list(laid.places)[:2], next(iter(laid.places.values()))))
         return laid

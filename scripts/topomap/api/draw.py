@@ -62,7 +62,7 @@ def _write(scene: Scene, out: IO[bytes], form: str, late: Late) -> str:
     from topomap.drawing import sheet
     from topomap.drawing.layout import layout
 
-    laid = layout(scene.world, scene.ahead, late=late)
+    laid = layout(scene.world, scene.ahead, late=late, where=scene.where())
     with _ALONE:
         sheet.write(sheet.picture([scene], laid=[laid]), out, form)
     return laid.note

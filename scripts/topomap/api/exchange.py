@@ -13,7 +13,7 @@ def exported(scene: Scene, form: str, late: Late = never) -> tuple[str, str]:
     from topomap.drawing.layout import layout
     from topomap.exchange.exports import DRAWN
 
-    laid = layout(scene.world, scene.ahead, late=late)
+    laid = layout(scene.world, scene.ahead, late=late, where=scene.where())
     return DRAWN[form](scene, laid), laid.note
 
 

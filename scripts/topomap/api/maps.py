@@ -189,6 +189,7 @@ class Map:
             whole=self._whole,
             marker=markers(self._corrected, self.at),
             rests=self._corrected.starts | self._corrected.looks,
+            seen=self._corrected,
         )
 
     def __str__(self) -> str:

@@ -2,6 +2,7 @@
 those in a file of maps."""
 
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from typing import NamedTuple, overload
 
@@ -9,6 +10,7 @@ from topomap.api.answer import Answer
 from topomap.api.solve import solve_under
 from topomap.documents import maps
 from topomap.drawing import scenes
+from topomap.drawing.ready import ready
 from topomap.drawing.scenes import Scene
 from topomap.model.experience import Experience
 from topomap.model.facts import parse
@@ -17,6 +19,7 @@ from topomap.model.query import Query
 from topomap.runtime.errors import InputError
 from topomap.runtime.files import read_text
 from topomap.runtime.watch import Watch
+from topomap.worlds.files import load
 
 MANY = 1000  # optimal maps; if there are more, they are not all looked for
 # The share of the time for the search of optimal maps; and if none is found then, the share of the
@@ -103,6 +106,24 @@ def scenes_under(
     best.sort(key=lambda one: one.at)
     shown = Searched(experience, path, best, len(best), answer.complete)
     return Choice(shown, answer.fault, True)
+
+
+def drawn_like(scene: Scene, file: str) -> tuple[Scene, str]:
+    """A scene whose places are where they are in a file of a world; and what there is to say of
+    that. Where it is not known which place is which, the scene stays as it is. Raises InputError,
+    one line."""
+    ready()
+    from topomap.drawing.likeness import likeness
+
+    loaded = load(file, two_way=True)
+    if loaded.layout.slots != scene.world.slots:
+        with suppress(InputError):  # so many slots may not part all ways
+            loaded = load(file, slots=scene.world.slots, two_way=True)
+    found = likeness(scene.world, loaded.environment.map, loaded.plan)
+    told = f"map {scene.number}: {found.note}" if found.note else ""
+    if found.where is None:
+        return scene, f"{told}; it is drawn as usual"
+    return replace(scene, like=found.where), told
 
 
 def _some(watch: Watch, experience: Experience, query: Query) -> list[Found]:

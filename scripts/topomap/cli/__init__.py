@@ -74,7 +74,7 @@ def _spare_inputs(args: argparse.Namespace) -> None:
     written by hand is easily lost."""
     told = vars(args)
     inputs: list[Any] = []
-    for name in ("instance", "file", "given", "maps", "maps_from", "among", "check"):
+    for name in ("instance", "file", "given", "maps", "maps_from", "among", "check", "like"):
         value = told.get(name)
         inputs += value if isinstance(value, list) else [value]
     # What generate writes as the truth, others read.

@@ -342,6 +342,12 @@ def add_scene(command: Parser) -> None:
         metavar="N",
         help="take the N-th map; if more than 1000 are optimal, the N-th one found (default: 1)",
     )
+    add(
+        "--like",
+        metavar="WORLD",
+        help="draw places where they are in this file of a world, as for topomap generate, north "
+        "up; which place is which, the links tell, or landmarks that are names of places there",
+    )
     add_known(command)
     add_asked(
         command,

@@ -49,9 +49,16 @@ def with_scene(args: argparse.Namespace, show: "Callable[[Scene, Late], str]") -
     if number > len(found):
         return status
     left = max(0.0, args.timeout - (time.monotonic() - begun))
+    scene = found[number - 1]
+    if args.like is not None:
+        from topomap.api.scenes import drawn_like
+
+        scene, told = drawn_like(scene, args.like)
+        if told:
+            say(f"{args.like}: {told}")
     try:
         with heeding(left, quiet=True) as watch:
-            note = show(found[number - 1], watch.late)
+            note = show(scene, watch.late)
     except Stopped as stopped:
         say(f"{source}: partial: {stopped}")
         return exit_status(str(stopped), False)

@@ -5,13 +5,15 @@ triangle is folded, and is bent towards a good shape (``springs``) by steps that
 nothing comes to cross and every rotation stays right.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from typing import Any
 
 import numpy as np
 from scipy import sparse
 from scipy.sparse import linalg
 
+from topomap.drawing.clearance import Passing, passing
 from topomap.drawing.mesh import Mesh, Numbers, Points, TooLong
 from topomap.drawing.springs import Springs, Term
 from topomap.model.topology import Gateway, Place, TopologicalMap
@@ -31,22 +33,39 @@ STAGES = (
     (0.002, 40.0),
 )
 ANEW = (100.0, 0.0), (10.0, 0.0)  # before these, if the drawing is not legible
+FREE = (0.1, 80.0), (0.01, 200.0), (0.002, 600.0)  # if then a line still passes under a place
 AGAIN = 2  # times at most, and not in fewer steps
 STEPS = 120  # of the descent, at most, with each weight
 WORK = 600_000  # numbers that all steps changed, together: then a drawing is not begun again
 MOST_POINTS = 20_000  # of a mesh
+FINE = 3_000  # of a mesh that is made finer
 LITTLE = 1e-9  # stiffness that leaves none without any
 # A matrix that is positive definite is solved without exchanging rows.
 PIVOTS: Any = {"diag_pivot_thresh": 0.0, "options": {"SymmetricMode": True}}
 
 
 def bent(
-    world: TopologicalMap, crossings: list[Place], steps: int, late: Late = never
+    world: TopologicalMap,
+    crossings: list[Place],
+    steps: int,
+    late: Late = never,
+    known: Mapping[Place, Points] | None = None,
 ) -> dict[Gateway, Points]:
     """Lines with bends, in a drawing in which no triangle of the mesh is folded; they go on
-    straight through the crossings. Raises TooLong if the drawing is not legible when the time is
-    over."""
-    mesh = Mesh(world, crossings)
+    straight through the crossings; places are near to where they are ``known`` to be. If a line
+    passes under a place, more bends are tried. Raises TooLong if the drawing is not legible when
+    the time is over."""
+    mesh, x = _drawn(Mesh(world, crossings, 1, known), steps, late)
+    if steps >= STEPS and not late() and mesh.size <= FINE and not _clear(mesh, x):
+        with suppress(TooLong):
+            finer, y = _drawn(Mesh(world, crossings, 2, known), steps, late)
+            if len(_under(finer, y)) < len(_under(mesh, x)):
+                mesh, x = finer, y
+    return _lines(mesh, x)
+
+
+def _drawn(mesh: Mesh, steps: int, late: Late) -> tuple[Mesh, Points]:
+    """A mesh, and its numbers in a good drawing."""
     if mesh.size > MOST_POINTS or late():
         raise TooLong
     points = mesh.start(late)
@@ -61,8 +80,37 @@ def bent(
             break
         if late():
             raise TooLong
+    for shape.weight, shape.apart in FREE if steps >= STEPS else ():
+        if not late() and not _clear(mesh, x):
+            x = _descend(shape, x, curves, steps, late)
     if late() and not shape.legible(x):
         raise TooLong
+    return mesh, x
+
+
+def _clear(mesh: Mesh, x: Points) -> bool:
+    """Whether no line passes under a place that is none of its ends."""
+    return not _under(mesh, x)
+
+
+def _under(mesh: Mesh, x: Points) -> list[Passing]:
+    lines = _lines(mesh, x)
+    ends = [({out[0], _end(mesh, out)[0]}, line) for out, line in lines.items()]
+    return passing({out[0]: line[0] for out, line in lines.items()}, ends)
+
+
+def _end(mesh: Mesh, out: Gateway) -> Gateway:
+    """The gateway at the end of a line, which goes straight through crossings; of a stub its
+    own."""
+    world, end = mesh.world, mesh.world.links.get(out, out)
+    while end[0] in mesh.crossings:
+        end = world.links[world.opposite(end)]
+    return end
+
+
+def _lines(mesh: Mesh, x: Points) -> dict[Gateway, Points]:
+    """The line that leaves by each gateway of a place."""
+    world, crossings = mesh.world, mesh.crossings
     points = x[: 2 * mesh.size].reshape(-1, 2)
     lines = {}
     for start in world.gateways():

@@ -3,7 +3,9 @@
 A map of genus 0 is drawn without crossings; of one of higher genus a planar part is, and the
 other links are led through its faces, across as few links as can be. Around each place the
 gateways leave in their order, clockwise as the agent turns. If all links can be straight and in
-the directions of one compass, they are. What takes too long is drawn plainly, and says so.
+the directions of one compass, they are. If it is known where places are, they are drawn there, or
+as near as can be without a crossing, and north is up. What takes too long is drawn plainly, and
+says so.
 """
 
 import random
@@ -15,9 +17,12 @@ from scipy import sparse
 from scipy.sparse import linalg
 
 from topomap.drawing.bent import STEPS, bent
-from topomap.drawing.mesh import Points, TooLong, cross, faces_of
-from topomap.drawing.plain import NOTE, plain
+from topomap.drawing.clearance import led_round, under
+from topomap.drawing.mesh import Points, TooLong, cross, faces_of, outer_of
+from topomap.drawing.placed import ALIKE, Targets, at_their_places, difference, targets, turned
+from topomap.drawing.plain import NOTE, UNDER, plain
 from topomap.drawing.planarize import left_out, planar_part, routed
+from topomap.drawing.scenes import Where
 from topomap.drawing.springs import STUB
 from topomap.model.topology import Gateway, Place, TopologicalMap
 from topomap.runtime.watch import Late, never
@@ -25,6 +30,9 @@ from topomap.runtime.watch import Late, never
 GAP = 1.0  # between components
 SHORTEST = 0.4  # link in a drawing by the compass
 NARROW = 0.05  # that lines may be to each other in it
+DISTORTED = 0.5  # the difference of a shape from what is known, in characters
+QUARTER = [np.array([[x, y], [-y, x]], float) for x, y in ((1, 0), (0, 1), (-1, 0), (0, -1))]
+ELSEWHERE = "some places are drawn elsewhere than they are"
 TRIES, LENGTHS = 150, (1, 1, 1, 2, 3)  # of other drawings, and of links in them
 
 
@@ -37,6 +45,7 @@ class Layout:
     gateways that its walk leaves by, the face on their right; ``outer``: the number of the outer
     one. ``crossing``: of another map the links that are not in the planar part. ``note`` says that
     the drawing is plain, if it is: then no faces are told, nor which links cross others.
+    ``elsewhere``: it is known where places are, but some are drawn elsewhere.
     """
 
     places: dict[Place, Points]
@@ -45,6 +54,7 @@ class Layout:
     outer: int
     crossing: list[tuple[Gateway, Gateway]]
     note: str = ""
+    elsewhere: bool = False
 
     def outline(self, face: list[Gateway]) -> Points:
         """The line round a face."""
@@ -52,34 +62,61 @@ class Layout:
 
 
 def layout(
-    world: TopologicalMap, ahead: Gateway | None = None, steps: int = STEPS, late: Late = never
+    world: TopologicalMap,
+    ahead: Gateway | None = None,
+    steps: int = STEPS,
+    late: Late = never,
+    where: Where | None = None,
 ) -> Layout:
-    """A drawing of a map. ``ahead`` is a gateway that is left to the right of the
+    """A drawing of a map. ``where`` tells where places are, and what is up; where that is not known
+    of all places, ``ahead`` is a gateway that is left to the right of the
     picture (else the first one); fewer ``steps`` do for a small picture. Several components stand
     side by side, and then no faces are told, for they share the outer one. The drawing is plain if
     it is ``late`` before there is a better one, or if that takes more work than one drawing may."""
     parts = world.parts()
     if len(parts) > 1:
-        return _beside([layout(part, _there(ahead, part), steps, late) for part in parts])
+        return _beside([layout(part, _there(ahead, part), steps, late, where) for part in parts])
+    known = targets(world, where)
     try:
         part = planar_part(world, late=late)
-        lines = _by_compass(part, late) if part is world else None
-        if lines is None:
-            lines = bent(*routed(part, left_out(part, world), late), steps, late)
+        placed = _placed(part, known, late) if part is world else None
+        if placed is not None:
+            lines = placed
+        else:
+            lines = bent(*routed(part, left_out(part, world), late), steps, late, known)
+            lines = led_round(world, lines)
     except TooLong:
-        lines = plain(world, STUB)
-        return replace(_turned(world, lines, ahead), note=NOTE)
-    return _layout(world, part, lines, ahead)
+        lines = plain(world, STUB, known)
+        note = f"{NOTE}, and {UNDER}" if under(world, lines) else NOTE
+        return replace(_turned(world, lines, ahead, known), note=note)
+    return _layout(world, part, lines, ahead, known)
+
+
+def _placed(
+    world: TopologicalMap, known: Targets | None, late: Late
+) -> dict[Gateway, Points] | None:
+    """Straight lines: between places where they are known to be, or by the compass, if places are
+    then about there."""
+    for placed in at_their_places(world, known) if known else ():
+        if not _meet(world, placed) and not under(world, placed):
+            return placed
+    lines = _by_compass(world, late)
+    if lines and known and difference(lines, known) > ALIKE:
+        return None
+    return lines
 
 
 def straight(
-    world: TopologicalMap, ahead: Gateway | None = None, late: Late = never
+    world: TopologicalMap,
+    ahead: Gateway | None = None,
+    late: Late = never,
+    where: Where | None = None,
 ) -> Layout | None:
     """A drawing by the compass, if there is one; of the links that are not in the planar part
-    only the beginning and the end, as stubs."""
+    only the beginning and the end, as stubs. It is turned by quarters only."""
     parts = world.parts()
     if len(parts) > 1:
-        drawn = [straight(part, _there(ahead, part), late) for part in parts]
+        drawn = [straight(part, _there(ahead, part), late, where) for part in parts]
         laid = [one for one in drawn if one is not None]
         return _beside(laid) if len(laid) == len(parts) else None
     try:
@@ -87,7 +124,24 @@ def straight(
     except TooLong:
         return None
     lines = _by_compass(part, late)
-    return None if lines is None else _layout(world, part, lines, ahead)
+    known = targets(world, where)
+    if lines is None or (known and difference(lines, known) > DISTORTED):
+        return None
+    if known:  # from the way ahead to the right, on by quarters to where it should be
+        level = _turned(world, lines, ahead, None).lines
+        x, y = _way(turned(level, known), ahead)
+        quarters = round(float(np.arctan2(y, x)) / (np.pi / 2)) % 4
+        lines = {out: line @ QUARTER[quarters] for out, line in level.items()}
+        there = {out[0]: line[0] for out, line in lines.items()}
+        elsewhere = difference(lines, known) > ALIKE
+        return replace(_layout(world, part, lines, ahead, there), elsewhere=elsewhere)
+    return _layout(world, part, lines, ahead, None)
+
+
+def _way(lines: Mapping[Gateway, Points], ahead: Gateway | None) -> Points:
+    """The direction of a line, of the first one if none is named."""
+    line = lines[ahead or next(iter(lines))]
+    return np.asarray(line[1] - line[0])
 
 
 def _there(gateway: Gateway | None, part: TopologicalMap) -> Gateway | None:
@@ -109,7 +163,7 @@ def _beside(drawings: Sequence[Layout]) -> Layout:
         crossing += laid.crossing
         right += points[:, 0].max() - points[:, 0].min() + GAP
     note = next((laid.note for laid in drawings if laid.note), "")
-    return Layout(places, lines, [], -1, crossing, note)
+    return Layout(places, lines, [], -1, crossing, note, any(one.elsewhere for one in drawings))
 
 
 def _layout(
@@ -117,21 +171,33 @@ def _layout(
     part: TopologicalMap,
     lines: Mapping[Gateway, Points],
     ahead: Gateway | None,
+    known: Targets | None,
 ) -> Layout:
     """The drawing, with what it shows of the map."""
     crossing = left_out(part, world)
     faces, outer = ([], -1) if crossing else faces_of(world)
-    laid = _turned(world, lines, ahead)
+    laid = _turned(world, lines, ahead, known)
+    if known and world.links and not crossing:
+        outer = outer_of([laid.outline(face) for face in faces])
     return replace(laid, faces=faces, outer=outer, crossing=crossing)
 
 
 def _turned(
-    world: TopologicalMap, lines: Mapping[Gateway, Points], ahead: Gateway | None
+    world: TopologicalMap,
+    lines: Mapping[Gateway, Points],
+    ahead: Gateway | None,
+    known: Targets | None,
 ) -> Layout:
-    """Places and lines, turned so that ``ahead`` leads to the right."""
+    """Places and lines, turned so that places are where they are known to be as nearly as can be,
+    or else so that ``ahead`` leads to the right."""
     first = ahead or next(world.gateways(), None)
     if first is None:
         return Layout({place: np.zeros(2) for place in world.stars}, {}, [], -1, [])
+    if known:
+        lines = turned(lines, known)
+        elsewhere = difference(lines, known) > ALIKE
+        places = {out[0]: line[0] for out, line in lines.items()}
+        return Layout(places, {**lines}, [], -1, [], elsewhere=elsewhere)
     x, y = lines[first][1] - lines[first][0]
     turn = np.array([[x, -y], [y, x]]) / np.hypot(x, y)
     lines = {gateway: line @ turn for gateway, line in lines.items()}
@@ -198,7 +264,7 @@ def _by_compass(world: TopologicalMap, late: Late = never) -> dict[Gateway, Poin
         off = np.linalg.norm(side - far[:, None] * along, axis=1)
         if (far >= SHORTEST).all() and (off <= 0.01 * SHORTEST).all():
             lines = _lines(world, north, dict(zip(number, found, strict=True)))
-            if not _meet(world, lines):
+            if not _meet(world, lines) and not under(world, lines):
                 return lines
         if late():
             break

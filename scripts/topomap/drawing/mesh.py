@@ -2,6 +2,8 @@
 bends of links, and in each face a ring of corners round a centre. It starts on a grid, where no
 triangle is folded."""
 
+from collections.abc import Mapping, Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
@@ -14,6 +16,8 @@ from topomap.runtime.watch import Late, never
 Points = NDArray[np.float64]
 Numbers = NDArray[np.int64]
 BENDS = 5  # inner points of a link that is not straight
+ROUNDS = 30  # in which crossings are put amid their neighbours
+PASSING = 3  # of a piece of one that goes to a crossing
 
 
 class TooLong(Exception):
@@ -45,14 +49,43 @@ def cross(u: Points, v: Points) -> Points:
     return np.asarray(u[..., 0] * v[..., 1] - u[..., 1] * v[..., 0])
 
 
+def outer_of(outlines: Sequence[Points]) -> int:
+    """Of the outlines of faces, each walked with its face on the right, that of the outer face:
+    the one that goes round the others the other way."""
+    areas = [cross(line, np.roll(line, -1, axis=0)).sum() for line in outlines]
+    return max(range(len(outlines)), key=lambda n: round(float(areas[n]), 9))
+
+
+def _with_crossings(world: TopologicalMap, known: Mapping[Place, Points]) -> dict[Place, Points]:
+    """Where places should be, and crossings: each amid what it is linked to."""
+    found = {place: known.get(place, np.zeros(2)) for place in world.stars}
+    for _ in range(ROUNDS if len(known) < len(found) else 0):
+        for place in found:
+            if place not in known:
+                ends = [world.links[place, slot][0] for slot in world.stars[place]]
+                found[place] = np.mean([found[end] for end in ends], axis=0)
+    return found
+
+
 class Mesh:
     """Points by number: places, ends and bends of lines, then those that are not drawn; and the
     triangles between them, counter-clockwise. ``rim`` are the points of the outline, fixed on a
-    circle."""
+    circle. A ``fine`` mesh has so many times as many bends.
+    ``known`` is where places should be, if that is known."""
 
-    def __init__(self, world: TopologicalMap, crossings: list[Place]) -> None:
+    def __init__(
+        self,
+        world: TopologicalMap,
+        crossings: list[Place],
+        fine: int = 1,
+        known: Mapping[Place, Points] | None = None,
+    ) -> None:
         self.world, self.crossings = world, crossings
         faces, outer = faces_of(world)
+        self.known = known and _with_crossings(world, known)
+        if self.known and world.links:
+            outlines = [np.array([self.known[place] for place, _ in face]) for face in faces]
+            outer = outer_of(outlines)
         self.size = 0
         self.place = {place: self._point() for place in world.stars}
         self.lines: dict[Gateway, list[int]] = {}
@@ -62,7 +95,7 @@ class Mesh:
             if end is None:
                 self.lines[gateway] = [start, self._point()]
             elif gateway not in self.lines:
-                inner = 2 if {gateway[0], end[0]} & set(crossings) else BENDS
+                inner = fine * (PASSING if {gateway[0], end[0]} & set(crossings) else BENDS)
                 line = [start, *(self._point() for _ in range(inner)), self.place[end[0]]]
                 self.lines[gateway], self.lines[end] = line, line[::-1]
         triangles = []
@@ -121,13 +154,26 @@ class Mesh:
         pull = sparse.coo_matrix((weights, (rows, columns)), (self.size, self.size)).tocsr()
         number = len(self.world.stars)
         radius = 2 + 1.5 * number**0.5 + 0.12 * number
+        if self.known:
+            radius = max(radius, 2 + 1.3 * max(float(np.hypot(*p)) for p in self.known.values()))
         turn = 2 * np.pi * np.arange(len(self.rim)) / len(self.rim)
         points[self.rim] = radius * np.stack([np.cos(turn), np.sin(turn)], 1)
         free = np.setdiff1d(np.arange(self.size), self.rim)
         total = sparse.diags(np.asarray(pull.sum(1)).ravel()[free])
         fixed = pull[free][:, self.rim] @ points[self.rim]
         points[free] = linalg.spsolve((total - pull[free][:, free]).tocsc(), fixed)
-        return points
+        return self._turned(points)
+
+    def _turned(self, points: Points) -> Points:
+        """The points, turned so that places are nearer to where they should be."""
+        if not self.known:
+            return points
+        drawn = np.array([points[self.place[place]] for place in self.known])
+        wanted = np.array([*self.known.values()])
+        drawn, wanted = drawn - drawn.mean(0), wanted - wanted.mean(0)
+        angle = np.arctan2(cross(drawn, wanted).sum(), (drawn * wanted).sum())
+        x, y = np.cos(angle), np.sin(angle)
+        return np.asarray(points @ np.array([[x, y], [-y, x]]))
 
     def _on_a_grid(self, late: Late) -> Points:
         """A drawing of the mesh with whole numbers as coordinates (Chrobak and Payne 1995)."""

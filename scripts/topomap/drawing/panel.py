@@ -12,8 +12,9 @@ from matplotlib.patches import Circle, PathPatch, Polygon
 from matplotlib.path import Path as Outline
 from scipy.spatial import KDTree
 
+from topomap.drawing.clearance import RADIUS
 from topomap.drawing.labels import gaps
-from topomap.drawing.layout import Layout, layout
+from topomap.drawing.layout import ELSEWHERE, Layout, layout
 from topomap.drawing.mesh import Points
 from topomap.drawing.scenes import Scene
 from topomap.model import words
@@ -22,12 +23,12 @@ from topomap.model.topology import Gateway, Place, TopologicalMap, gid, label
 INK, LINK, CROSSING, PENDING = "#1b1b1b", "#3d4a57", "#c2332d", "#2f7fc1"
 AGENT, SIGN, SIGNED, STEP = "#e07b00", "#2e7d4f", "#e7f5ea", "#5c6670"
 FACES = ("#dfeaf3", "#f6ead9", "#e3f0e0", "#efe3ef", "#f3f0d8", "#dff0ee")
-RADIUS = 0.15  # of a place's circle, where a link is of length 1
 BESIDE = 0.15  # a text on the right of a line; what is farther from it is not near
 DASHES: Any = (0, (4, 2))
 UNIT = 0.8  # inches that a link of length 1 takes
 MARGIN = 0.35  # round all lines
 TITLE = 9  # points
+LETTERS = 5  # of a line of the name of a place, if that is longer but not too long
 
 Box = tuple[float, float, float, float]  # left, bottom, right, top
 
@@ -39,7 +40,7 @@ def draw(
     that cross others the faces are not drawn: those of the planar part are not the map's."""
     world = scene.world
     at = scene.at
-    laid = laid or layout(world, scene.ahead)
+    laid = laid or layout(world, scene.ahead, where=scene.where())
     for gateway, line in laid.lines.items():
         _draw_line(axes, world, laid, gateway, line)
     for place, point in laid.places.items():
@@ -85,6 +86,7 @@ def title(scene: Scene, laid: Layout) -> str:
     count = len(laid.crossing)
     others = "1 link crosses others" if count == 1 else f"{count} links cross others"
     told = [scene.title, *[others] * bool(count), *[laid.note] * bool(laid.note)]
+    told += [ELSEWHERE] * laid.elsewhere
     return ", ".join(told)
 
 
@@ -182,8 +184,9 @@ def _draw_place(
         style: Any = {"ec": INK, "lw": 3, "capstyle": "butt", "zorder": 4.2}
         axes.add_patch(PathPatch(path, fill=False, **style, gid=f"ticks-{name}"))
     x, y = point
-    size = min(7.0, 18 / len(name))
-    axes.text(x, y, name, fontsize=size, ha="center", va="center", color=INK, zorder=5)
+    lines = words.wrapped(name, LETTERS if len(name) <= LETTERS**2 else len(name))
+    size = min(7.0, 18 / max(map(len, lines)), 18 / 1.2 / len(lines))
+    axes.text(x, y, "\n".join(lines), fontsize=size, ha="center", va="center", color=INK, zorder=5)
 
 
 def _out(line: Points) -> Points:
@@ -196,8 +199,10 @@ def _draw_signs(
 ) -> Box:
     """The landmarks of a place, in the widest gap between the lines that leave it; if the text
     covers something there, in that where it covers least. Returns where it is."""
-    text = words.signs(world.landmarks[place])
-    wide, high = extent(text, 7) / UNIT + 0.04, 7 * 1.2 / 72 / UNIT
+    lines = words.sign_lines(world.landmarks[place])
+    text = "\n".join(lines)
+    wide = max(extent(line, 7) for line in lines) / UNIT + 0.04
+    high = len(lines) * 7 * 1.2 / 72 / UNIT
     outs = (_out(laid.lines[place, slot]) for slot in world.stars[place])
     places: list[Box] = []
     for gap, middle in gaps([atan2(y, x) for x, y in outs]):

@@ -1,14 +1,17 @@
 """Plain drawings, which take little time: places about as far from each other as they are in the
 map, and lines straight from one to the other. Lines leave each place in their order, but may cross
-where they need not."""
+where they need not; they are led round the places that they would pass under."""
+
+from collections.abc import Mapping
 
 import numpy as np
 from scipy import linalg, sparse
 from scipy.sparse import csgraph
 from scipy.spatial import KDTree
 
+from topomap.drawing.clearance import CLEAR, passing
 from topomap.drawing.mesh import Points
-from topomap.model.topology import Gateway, TopologicalMap
+from topomap.model.topology import Gateway, Place, TopologicalMap
 
 ROUNDS = 60  # in which places are moved to where their distances are nearer to what they should be
 WORK = 2_000_000  # distances that are looked at in all rounds
@@ -17,14 +20,21 @@ NEAREST = 0.6  # that places may be
 PUSHES = 200  # times at most that places are pushed apart
 STEM = 0.3  # the length of a line's first piece
 MOST_TURN = np.pi / 2.4  # between a line's first piece and where it goes; else it goes round
+DETOURS, AROUND = 30, 1.2  # at most, of a line; how far from a place, in least distances
 NOTE = "drawn plainly, as a better drawing takes too long"
+UNDER = "links pass under places"
 
 
-def plain(world: TopologicalMap, stub: float) -> dict[Gateway, Points]:
-    """The lines of a map of one component; of a place without gateways there are none."""
+def plain(
+    world: TopologicalMap, stub: float, known: Mapping[Place, Points] | None = None
+) -> dict[Gateway, Points]:
+    """The lines of a map of one component; of a place without gateways there are none. Places are
+    about where they are ``known`` to be, if they are."""
     number = {place: n for n, place in enumerate(world.stars)}
     pairs = [(number[p], number[q]) for (p, _), (q, _) in world.edges() if p != q]
-    points = _points(len(number), pairs)
+    points = (
+        _points(len(number), pairs) if known is None else pushed_apart(np.array([*known.values()]))
+    )
     ends = [(number[p], number[world.links[p, s][0]], s) for p, s in world.links if (p, s)]
     norths = _norths(points, [end for end in ends if end[0] != end[1]], world.slots)
     turn = 2 * np.pi / world.slots
@@ -47,6 +57,34 @@ def plain(world: TopologicalMap, stub: float) -> dict[Gateway, Points]:
                 line = [here, *leaving, *_stem(there, back, here)[::-1], there]
             lines[gateway] = np.array(line)
             lines[other] = lines[gateway][::-1]
+    return _led_round(world, dict(zip(number, points, strict=True)), lines)
+
+
+def _led_round(
+    world: TopologicalMap, places: Mapping[Place, Points], lines: dict[Gateway, Points]
+) -> dict[Gateway, Points]:
+    """The lines, led round the places that they would pass under; their first and last pieces stay
+    as they are, so each still leaves by its gateway."""
+    once = [out for out, _ in world.edges()]
+    ends = [{out[0], world.links[out][0]} for out in once]
+    for _ in range(DETOURS):
+        met = passing(places, list(zip(ends, (lines[out] for out in once), strict=True)))
+        led: set[int] = set()
+        for number, piece, place in met:
+            line = lines[once[number]]
+            if number in led or not 0 < piece < len(line) - 2:
+                continue
+            led.add(number)
+            a, b = line[piece], line[piece + 1]
+            way = (b - a) / max(1e-9, float(np.hypot(*(b - a))))
+            aside = np.array([-way[1], way[0]])
+            side = np.copysign(1.0, (a - places[place]) @ aside)
+            spot = places[place] + side * AROUND * CLEAR * aside
+            out = once[number]
+            lines[out] = np.insert(line, piece + 1, spot, axis=0)
+            lines[world.links[out]] = lines[out][::-1]
+        if not led:
+            break
     return lines
 
 
@@ -80,8 +118,7 @@ def _norths(points: Points, ends: list[tuple[int, int, int]], slots: int) -> Poi
 def _points(many: int, pairs: list[tuple[int, int]]) -> Points:
     """Points whose distances are about the numbers of links between them, by stress majorization
     (Gansner, Koren and North 2004); or points on a circle. None are too close to each other."""
-    turn = 2 * np.pi * np.arange(many) / many
-    circle = max(1, many * NEAREST / 5) * np.stack([np.cos(turn), np.sin(turn)], 1)
+    circle = _circle(many)
     if many < 3 or many > MOST_PLACES:
         return circle
     one, other = np.array(pairs).T
@@ -99,6 +136,16 @@ def _points(many: int, pairs: list[tuple[int, int]]) -> Points:
         ratio = weight * far / np.maximum(apart, 1e-3)
         points = factor @ (ratio.sum(1)[:, None] * points - ratio @ points + points)
     return _pushed(points, circle)
+
+
+def pushed_apart(points: Points) -> Points:
+    """Points where they are, but for those that are too close to each other."""
+    return _pushed(points, _circle(len(points)))
+
+
+def _circle(many: int) -> Points:
+    turn = 2 * np.pi * np.arange(many) / many
+    return max(1, many * NEAREST / 5) * np.stack([np.cos(turn), np.sin(turn)], 1)
 
 
 def _scaled(far: Points, many: int) -> Points:

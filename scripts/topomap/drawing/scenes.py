@@ -1,7 +1,7 @@
 """Maps to be shown: those that were found in an instance, or those in a file of maps."""
 
 from collections import Counter, defaultdict
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from pathlib import PurePath
@@ -11,12 +11,13 @@ from topomap.documents import maps
 from topomap.documents.check import STEP_RULES
 from topomap.model.experience import MOST_SLOTS, Experience
 from topomap.model.found import Found
-from topomap.model.topology import Gateway, TopologicalMap
+from topomap.model.topology import Gateway, Place, TopologicalMap
 from topomap.model.words import markers, plural, short
 from topomap.runtime.errors import InputError, printable
 from topomap.runtime.limits import LARGEST
 
 MOST_DRAWN = 1000  # in a picture
+Where = Mapping[Place, tuple[float, float]]  # to the right and up, in any unit
 
 
 @dataclass(frozen=True)
@@ -27,7 +28,8 @@ class Scene:
     which are all if ``whole``. ``kind`` says what these maps are; if it is empty, that is not
     known, and they are those that were given. ``caption`` is a title instead of these. ``marker``
     says where the marker was put down, seen and taken up, if it was; ``rests`` are the steps that
-    are no travel.
+    are no travel. ``seen`` is the experience, if it is known; ``like`` tells where places are, if
+    that is to be as in some world.
     """
 
     world: TopologicalMap
@@ -40,6 +42,18 @@ class Scene:
     whole: bool = False
     marker: str = ""
     rests: Collection[int] = ()
+    seen: Experience | None = None
+    like: Where | None = None
+
+    def where(self) -> Where:
+        """Where places are, as far as that is known: as in ``like``, or by what was measured."""
+        if self.like is not None:
+            return self.like
+        if self.seen is None or not (self.seen.compass or self.seen.shifts):
+            return {}
+        from topomap.drawing.where import measured  # it takes its time
+
+        return measured(self.seen, [(place, slot) for place, slot in self.at])
 
     @property
     def title(self) -> str:
@@ -115,6 +129,7 @@ def of_instance(seen: Experience, name: str, document: maps.Document) -> list[Sc
                 whole=document.whole,
                 marker=markers(corrected, at),
                 rests=corrected.starts | corrected.looks,
+                seen=corrected,
             )
         )
     return scenes
@@ -136,6 +151,7 @@ def one_found(
         whole=whole,
         marker=markers(experience, one.at),
         rests=experience.starts | experience.looks,
+        seen=experience,
     )
 
 

@@ -46,14 +46,18 @@ class Drawing:
 
 
 def drawing(
-    world: TopologicalMap, ahead: Gateway | None, small: bool = False, late: Late = never
+    world: TopologicalMap,
+    ahead: Gateway | None,
+    small: bool = False,
+    late: Late = never,
+    where: Mapping[Place, tuple[float, float]] | None = None,
 ) -> Drawing | None:
     """A drawing of a map (see ``layout.layout``), made in as few steps as leave it legible. A
     small one has no faces, and there is none if the gateways of a place cannot be told apart."""
     from topomap.drawing import layout
 
     for steps in FEW if small else MANY:
-        laid = layout.layout(world, ahead, steps, late)
+        laid = layout.layout(world, ahead, steps, late, where)
         unit, places, lines = _scaled(laid, world)
         narrowest = min((_narrowest(lines, *star) for star in world.stars.items()), default=360)
         apart = all(math.dist(p, q) > APART for p, q in combinations(places.values(), 2))
@@ -102,7 +106,8 @@ def _wide(text: str) -> int:
 
 def box_of(world: TopologicalMap, place: Place, point: Point) -> Box:
     """What the landmarks of a place cover, if they begin there."""
-    return (*point, _wide(words.signs(world.landmarks[place])), HIGH)
+    lines = words.sign_lines(world.landmarks[place])
+    return (*point, max(map(_wide, lines)), len(lines) * HIGH)
 
 
 def _taken(

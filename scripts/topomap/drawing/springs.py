@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from scipy.spatial import KDTree
 
-from topomap.drawing.mesh import BENDS, Mesh, Numbers, Points, cross
+from topomap.drawing.mesh import Mesh, Numbers, Points, cross
 
 # Terms f(y) of an energy, where y depends on some of the numbers x: which these are, dy/dx of each
 # of them, f'(y), and f''(y) or 0 if that is negative. A column for each of the terms of a kind.
@@ -18,6 +18,7 @@ STUB = 0.36  # the length of a stub, where a link is of length 1
 FIRST = 0.22  # the length of a link's piece at a place
 LEAVING = 0.16  # what that must be, and of a stub, to be seen outside the place's circle
 SIDES = (0, 1), (0, 2), (1, 2)  # of a triangle, by its corners
+SHORT = 0.6  # the least length of a link whose ends are known
 PIECE, LOOP = 0.7, 1.6  # the lengths of a link's piece up to a crossing, and of a loop
 
 
@@ -34,6 +35,7 @@ class Springs:
     # Places to each other, a crossing to either, a place to a line, and two lines.
     NEAR = 0.9, 0.6, 0.4, 0.25
     FIRM = 10.0  # times as firm as other pieces: where lines leave
+    ANCHOR = 2.0  # of a place, to where it should be
     LEAST = 0.1  # of the compass's stiffness, where a gateway is far from its direction
 
     def __init__(self, mesh: Mesh) -> None:
@@ -49,10 +51,14 @@ class Springs:
         lines.sort(key=lambda line: line[0] >= self.places)  # those that leave crossings last
         sides += [(*line[:2], FIRST) for line in lines]
         firm = sum(side[0] < self.places for side in sides)
-        for gateway, _ in world.edges():
+        crossed = {mesh.place[place] for place in mesh.crossings}
+        for gateway, other in world.edges():
             line = mesh.lines[gateway]
             weak = line[0] == line[-1]  # a loop cannot but bend
-            whole = LOOP if weak else 1.0 if len(line) == BENDS + 2 else PIECE
+            whole = LOOP if weak else PIECE if {line[0], line[-1]} & crossed else 1.0
+            if mesh.known and not weak:
+                far = float(np.hypot(*(mesh.known[gateway[0]] - mesh.known[other[0]])))
+                whole = max(SHORT, far)
             rest = (whole - 2 * FIRST) / (len(line) - 3)
             sides += [(a, b, rest) for a, b in pairwise(line[1:-1])]
             bends += [(*three, weak) for three in zip(line, line[1:], line[2:], strict=False)]
@@ -69,6 +75,9 @@ class Springs:
         starts = [(mesh.place[p], mesh.lines[p, s][1], s) for p, s in real]
         self.gateways = np.array(starts).T
         self.neighbours = Neighbours(mesh, self.places, self.NEAR)
+        anchors = [p for p in mesh.known or () if p not in mesh.crossings]
+        self.anchors = np.array([mesh.place[place] for place in anchors], int)
+        self.wanted = np.array([(mesh.known or {})[place] for place in anchors]).reshape(-1, 2)
         self.fixed = self._fixed_columns()
 
     def norths(self, points: Points) -> Points:
@@ -115,7 +124,8 @@ class Springs:
         axes = [np.hstack([2 * numbers, 2 * numbers + 1]) for numbers in (edges, self.bends)]
         place, end, _ = self.gateways
         turning = np.vstack([_both(place, end), 2 * self.size + place[None]])
-        return [corners, axes[0], ends, ends, axes[1], turning]
+        held = [_both(self.anchors).reshape(1, -1)] if len(self.anchors) else []
+        return [corners, axes[0], ends, ends, axes[1], turning, *held]
 
     def __call__(self, x: Points) -> tuple[float, list[Term]]:
         """The energy, infinite if a triangle is folded, and its terms; the last of these are those
@@ -160,6 +170,12 @@ class Springs:
         stiff = self.COMPASS * np.maximum(np.cos(off), self.LEAST)
         turning = np.vstack([aside, -np.ones(len(a))])
         shapes.append((turning, self.COMPASS * np.sin(off), stiff))
+        if len(self.anchors):
+            off_by = points[self.anchors] - self.wanted
+            total += self.ANCHOR * (off_by**2).sum()
+            pull = 2 * self.ANCHOR * np.concatenate([off_by.T[0], off_by.T[1]])
+            # As _both has them: all first coordinates of the places, then all second ones.
+            shapes.append((np.ones((1, len(pull))), pull, np.full(len(pull), 2 * self.ANCHOR)))
         terms = [
             (columns, ways, pull, np.broadcast_to(stiff, pull.shape))
             for columns, (ways, pull, stiff) in zip(self.fixed, shapes, strict=True)

@@ -66,9 +66,11 @@ def body(
     for place, (x, y) in drawn.signs.items():
         if world.landmarks.get(place):
             _, _, wide, high = box_of(world, place, (x, y))
-            text = escape(words.signs(world.landmarks[place]))
-            middle = f'x="{x + wide // 2}" y="{y + high // 2}"'
-            parts.append(f'<text class="sign" {middle}>{text}</text>')
+            lines = words.sign_lines(world.landmarks[place])
+            for number, told in enumerate(lines):
+                at = y + (2 * number + 1) * high // (2 * len(lines))
+                middle = f'x="{x + wide // 2}" y="{at}"'
+                parts.append(f'<text class="sign" {middle}>{escape(told)}</text>')
     return "".join(parts)
 
 

@@ -16,7 +16,7 @@ from string import ascii_letters
 
 import numpy as np
 
-from topomap.drawing.layout import Layout, layout, straight
+from topomap.drawing.layout import ELSEWHERE, Layout, layout, straight
 from topomap.drawing.mesh import Points
 from topomap.drawing.scenes import Scene
 from topomap.model.topology import Gateway, Place, gid, label
@@ -82,14 +82,15 @@ def drawn(scene: Scene, width: int, coloured: bool = False, late: Late = never) 
     dots fit, unless numbers would fall onto each other: then they are up to four times as wide.
     The second text says that the drawing is plain, if it is (see ``layout``)."""
     world = scene.world
-    laid = straight(world, scene.ahead, late)
+    where = scene.where()
+    laid = None if scene.like else straight(world, scene.ahead, late, where)
     letters = _letters(laid) if laid else {}
     canvas = boxes(scene, laid, letters) if laid else None
     if laid is None or canvas is None:
-        laid, letters = layout(world, scene.ahead, late=late), {}
+        laid, letters = layout(world, scene.ahead, late=late, where=where), {}
         canvas = dots(scene, laid, width)
     title, sizes = scene.title.rsplit("\n", 1)
-    sizes += f", {laid.note}" * bool(laid.note)
+    sizes += f", {laid.note}" * bool(laid.note) + f", {ELSEWHERE}" * laid.elsewhere
     told = [title, sizes, "", *canvas.lines(coloured), ""]
     for line in words(scene, laid, letters):
         told += textwrap.wrap(printable(line), width, subsequent_indent="    ")

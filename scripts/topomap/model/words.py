@@ -1,6 +1,7 @@
 """An exploration in words."""
 
 import re
+import textwrap
 from collections.abc import Collection, Mapping, Sequence
 from typing import TYPE_CHECKING
 
@@ -11,7 +12,8 @@ if TYPE_CHECKING:  # who only reads a call need not load the solver
     from topomap.model.experience import Experience, Misread
 
 MOST = 24  # gateways of a view that are told one by one
-LONGEST = 16  # letters of the landmarks of a place, in a picture
+LONGEST = 16  # letters of a line of the landmarks of a place, in a picture
+MOST_LINES = 24  # of the landmarks of a place
 RULES = {
     "view": "another view is seen there",
     "landmark": "other landmarks are seen there",
@@ -147,8 +149,24 @@ def short(text: str, most: int) -> str:
 
 
 def signs(landmarks: Collection[str]) -> str:
-    """The landmarks of a place in a picture: strings without their quotes, in one line."""
-    return short(", ".join(printable(_unquoted(sign)) for sign in sorted(landmarks)), LONGEST)
+    """The landmarks of a place in a few words: strings without their quotes, in one line."""
+    return short(_signs(landmarks), LONGEST)
+
+
+def sign_lines(landmarks: Collection[str]) -> list[str]:
+    """The same in a picture: whole, over several lines if they are long."""
+    return wrapped(_signs(landmarks), LONGEST)
+
+
+def _signs(landmarks: Collection[str]) -> str:
+    return ", ".join(printable(_unquoted(sign)) for sign in sorted(landmarks))
+
+
+def wrapped(text: str, wide: int) -> list[str]:
+    """A name over lines of so many letters at most, parted between words where that can be; only
+    a name of many lines is cut."""
+    lines = textwrap.wrap(text, wide) or [text]
+    return lines if len(lines) <= MOST_LINES else [*lines[: MOST_LINES - 1], "…"]
 
 
 def _unquoted(sign: str) -> str:

@@ -42,7 +42,9 @@ def given_maps(file: str, path: str, whole: Experience, query: Query) -> list[Sc
             at = beginning(where, entry["at"], whole, cut, demands)
             rest = path, number, many, document.kind
             rests = cut.starts | cut.looks
-            made.append(Scene(cut.map_of(at), at, *rest, whole=document.whole, rests=rests))
+            made.append(
+                Scene(cut.map_of(at), at, *rest, whole=document.whole, rests=rests, seen=cut)
+            )
     if len({scene.at for scene in made}) < len(made):
         raise InputError(f"{file}: a map is there twice")
     if not made:
@@ -158,7 +160,9 @@ class Chapter:
         for scene in some:
             self.watch.title(f"picture of map {scene.number}")
             if len(scene.world.stars) <= MOST_DRAWN:
-                drawn = shapes.drawing(scene.world, scene.ahead, late=self._late())
+                drawn = shapes.drawing(
+                    scene.world, scene.ahead, late=self._late(), where=scene.where()
+                )
                 self._keep(tuple(scene.at), drawn)
                 if drawn and drawn.note:
                     self.faults.append(f"picture of map {scene.number}: {drawn.note}")
@@ -179,7 +183,15 @@ class Chapter:
                 parts = (shapes.part_of(whole, world) for whole in grown if whole)
                 drawn = next((part for part in parts if part), None)
                 if drawn is None:
-                    scene = Scene(world, at, self.name, rests=self.seen.starts | self.seen.looks)
-                    drawn = shapes.drawing(world, scene.ahead, small=True, late=self._late())
+                    scene = Scene(
+                        world,
+                        at,
+                        self.name,
+                        rests=self.seen.starts | self.seen.looks,
+                        seen=self.seen,
+                    )
+                    drawn = shapes.drawing(
+                        world, scene.ahead, small=True, late=self._late(), where=scene.where()
+                    )
                 self._keep(at, drawn)
                 yield

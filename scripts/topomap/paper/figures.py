@@ -14,6 +14,7 @@ from matplotlib.patches import Circle, Polygon
 from matplotlib.ticker import MaxNLocator, NullFormatter
 
 from topomap.drawing import panel, scenes, sheet
+from topomap.drawing.clearance import RADIUS
 from topomap.drawing.mesh import Points
 from topomap.drawing.scenes import Scene
 from topomap.model.experience import Experience
@@ -254,7 +255,7 @@ def _beside(line: Points, aside: float) -> Points:
     a, b = line[0], line[-1]
     ahead = (b - a) / np.linalg.norm(b - a)
     right = aside * np.array([ahead[1], -ahead[0]])
-    short = 1.3 * panel.RADIUS * ahead
+    short = 1.3 * RADIUS * ahead
     return np.array([a + short + right, b - short + right])
 
 

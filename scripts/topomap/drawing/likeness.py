@@ -1,0 +1,181 @@
+"""Where the places of a map are, if it is a map of a world whose places have positions.
+
+Which place of the world is which place of the map is told by the links: each place is one of the
+world with gateways in the same slots, each link one of its links, and no two places are one. If no
+world is like the map, places are found by names: a landmark that one place of the map has, and one
+place of the world has it as its landmark or its name.
+"""
+
+from collections import Counter
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from typing import NamedTuple
+
+import numpy as np
+
+from topomap.drawing.scenes import Where
+from topomap.model.terms import spelt
+from topomap.model.topology import Gateway, Place, TopologicalMap, label
+from topomap.worlds.plan import Plan
+
+ENOUGH = 3  # places that are found by name, for the others to be put between them
+ROUNDS = 300  # in which those are
+WORK = 2_000_000  # gateways that are looked at, at most
+SEVERAL = 2  # ways to lay a map onto a world: more are not looked for
+
+
+class Likeness(NamedTuple):
+    """Where the places of a map are, None if that is not told; and what there is to say of it."""
+
+    where: Where | None
+    note: str
+
+
+def likeness(world: TopologicalMap, real: TopologicalMap, plan: Plan) -> Likeness:
+    """Where the places of a map are, by the places of a real world and the plan of it."""
+    if not all(place in plan.points for place in real.stars):
+        return Likeness(None, "the world does not tell where its places are")
+    names = _names(real, plan)
+    named = _by_name(world, names)
+    found: list[dict[Place, Place]] = []
+    for same in (_same_slots, _same_order) if world.slots == real.slots else (_same_order,):
+        found = list(_laid(world, real, same, named))
+        if found:
+            break
+    if found:
+        where = {place: plan.points[there] for place, there in found[0].items()}
+        several = "it can be laid onto the world in several ways, of which this is one"
+        return Likeness(where, several if len(found) > 1 else "")
+    if len(named) >= ENOUGH:
+        at = {place: plan.points[there] for place, there in named.items()}
+        told = f"{len(named)} places are found by their names, and the others put between them"
+        return Likeness(_between(world, at), f"it is no part of the world: {told}")
+    return Likeness(None, "it is no part of the world, as its links tell, and names do not help")
+
+
+def _names(real: TopologicalMap, plan: Plan) -> dict[str, Place]:
+    """The places of a world by what only one of them is called, or has as its landmark."""
+    called: list[tuple[str, Place]] = []
+    for place in real.stars:
+        terms = {*plan.landmarks.get(place, ())}
+        for name in (plan.names.get(place), label(place)):
+            if name:
+                quoted = name.replace("\\", "\\\\").replace('"', '\\"').replace("\n", "\\n")
+                terms.add(f'"{quoted}"')
+                terms |= _term(name)
+        called += [(term, place) for term in terms]
+    times = Counter(term for term, _ in called)
+    return {term: place for term, place in called if times[term] == 1}
+
+
+def _term(name: str) -> set[str]:
+    """A name as a term of clingo, if it is one."""
+    try:
+        return {spelt(name)}
+    except ValueError:
+        return set()
+
+
+def _by_name(world: TopologicalMap, names: Mapping[str, Place]) -> dict[Place, Place]:
+    """The place of the world of each place of the map, as far as landmarks tell it."""
+    times = Counter(sign for signs in world.landmarks.values() for sign in signs)
+    found: dict[Place, Place] = {}
+    for place, signs in world.landmarks.items():
+        there = {names[sign] for sign in signs if times[sign] == 1 and sign in names}
+        if len(there) == 1:
+            found[place] = there.pop()
+    twice = Counter(found.values())
+    return {place: there for place, there in found.items() if twice[there] == 1}
+
+
+Same = Callable[[TopologicalMap, Gateway, TopologicalMap, Gateway], list[tuple[int, int]] | None]
+
+
+def _same_slots(
+    world: TopologicalMap, mine: Gateway, real: TopologicalMap, theirs: Gateway
+) -> list[tuple[int, int]] | None:
+    """The gateways of a place, each with that of the other place that is in the same slot, when one
+    is laid on the other; None if they differ."""
+    turn = theirs[1] - mine[1]
+    pairs = [(slot, (slot + turn) % real.slots) for slot in sorted(world.stars[mine[0]])]
+    return pairs if {slot for _, slot in pairs} == real.stars[theirs[0]] else None
+
+
+def _same_order(
+    world: TopologicalMap, mine: Gateway, real: TopologicalMap, theirs: Gateway
+) -> list[tuple[int, int]] | None:
+    """The same where slots may differ, but not the order of the gateways."""
+    star, other = sorted(world.stars[mine[0]]), sorted(real.stars[theirs[0]])
+    if len(star) != len(other):
+        return None
+    off = other.index(theirs[1]) - star.index(mine[1])
+    return [(slot, other[(n + off) % len(other)]) for n, slot in enumerate(star)]
+
+
+def _laid(
+    world: TopologicalMap, real: TopologicalMap, same: Same, named: Mapping[Place, Place]
+) -> Iterator[dict[Place, Place]]:
+    """The ways to lay a map of one component onto a world, of which some are looked for."""
+    if len(world.components()) > 1:
+        return
+    first = next(iter(named), None)
+    starts: Iterable[Place] = real.stars if first is None else [named[first]]
+    mine = next((out for out in world.gateways() if first is None or out[0] == first), None)
+    if mine is None:
+        return
+    work, many = WORK, 0
+    for place in starts:
+        for slot in sorted(real.stars[place]):
+            found, looked = _match(world, mine, real, (place, slot), same)
+            work -= looked
+            if found is not None and all(found[one] == named[one] for one in named):
+                yield found
+                many += 1
+            if work < 0 or many >= SEVERAL:
+                return
+
+
+def _match(
+    world: TopologicalMap, mine: Gateway, real: TopologicalMap, theirs: Gateway, same: Same
+) -> tuple[dict[Place, Place] | None, int]:
+    """The places of the world onto which those of the map come, if one gateway is laid on another;
+    None if that fails; and how many gateways were looked at."""
+    image: dict[Gateway, Gateway] = {}
+    places: dict[Place, Place] = {}
+    taken: set[Place] = set()
+    waiting = [(mine, theirs)]
+    while waiting:
+        here, there = waiting.pop()
+        if here in image:
+            if image[here] != there:
+                return None, len(image)
+            continue
+        pairs = None if there[0] in taken else same(world, here, real, there)
+        if pairs is None:
+            return None, len(image)
+        places[here[0]] = there[0]
+        taken.add(there[0])
+        for slot, other in pairs:
+            image[here[0], slot] = there[0], other
+        for slot, other in pairs:
+            end = world.links.get((here[0], slot))
+            if end is not None:
+                if (there[0], other) not in real.links:
+                    return None, len(image)
+                waiting.append((end, real.links[there[0], other]))
+    return places, len(image)
+
+
+def _between(world: TopologicalMap, at: Where) -> Where:
+    """Where all places are, if some are known: each of the others amid those that it is linked
+    to."""
+    middle = np.mean([*at.values()], axis=0)
+    found = {place: np.array(at.get(place, middle), float) for place in world.stars}
+    ends: dict[Place, list[Place]] = {place: [] for place in world.stars if place not in at}
+    for out, end in world.links.items():
+        if out[0] in ends:
+            ends[out[0]].append(end[0])
+    for _ in range(ROUNDS):
+        for place, near in ends.items():
+            if near:
+                found[place] = np.mean([found[other] for other in near], axis=0)
+    return {place: (float(x), float(y)) for place, (x, y) in found.items()}
