@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from topomap.api.simulate import simulate
     from topomap.api.solve import solve
     from topomap.api.validate import validate
-    from topomap.api.world import world
+    from topomap.api.world import world, write_world
     from topomap.model.experience import Experience
     from topomap.runtime.errors import InputError
 
@@ -54,6 +54,7 @@ _WHERE = {
     "solve": "api.solve",
     "validate": "api.validate",
     "world": "api.world",
+    "write_world": "api.world",
 }
 __all__ = [
     "Answer",
@@ -75,6 +76,7 @@ __all__ = [
     "solve",
     "validate",
     "world",
+    "write_world",
 ]
 
 if not TYPE_CHECKING:  # a checker of types would take any name for one of these

@@ -550,7 +550,8 @@ def test_a_world_is_read_back_as_it_was(tmp_path, form, seed):
     places = [*made.map.stars]
     points = points_of(made)
     names = {places[0]: 'the "first" é'}
-    text = world_text(made, points, form, north, names)
+    made = replace(made, points=points, names=names, north=north)
+    text = world_text(made, form)
     file = tmp_path / "back"
     file.write_text(text, encoding="utf-8")
     back = load(file, Reading())
@@ -562,19 +563,18 @@ def test_a_world_is_read_back_as_it_was(tmp_path, form, seed):
         label(p): at for p, at in points.items()
     }
     assert back.plan.names == {label(places[0]): names[places[0]]}
-    again = replace(back.environment, name=made.name)
-    assert world_text(again, back.plan.points, form, north, back.plan.names) == text
+    assert world_text(replace(back.environment, name=made.name), form) == text
 
 
 def test_what_cannot_be_written_is_refused():
     odd = decorated(1)
     place = next(iter(odd.map.stars))
     with pytest.raises(InputError, match="XML has no place for the name"):
-        world_text(odd, {}, "graphml", names={place: "a\x01"})
+        world_text(replace(odd, names={place: "a\x01"}), "graphml")
     with pytest.raises(InputError, match="it is not told where place"):
-        world_text(replace(odd, moves={}), {}, "tmap2")
+        world_text(replace(odd, moves={}), "tmap2")
     with pytest.raises(ValueError, match="'dot' is none of graphml, json, tmap2"):
-        world_text(odd, {}, "dot")
+        world_text(odd, "dot")
 
 
 @pytest.mark.parametrize("form", ["graphml", "json", "tmap2"])
@@ -583,7 +583,7 @@ def test_exported_maps_become_the_worlds_that_they_show(tmp_path, form):
     solved = run("topomap", "solve", instance, "--optimal", "--json")
     told = json.loads(solved.stdout)
     (scene, *_) = of_document(maps.document("maps", told))
-    text = exports.PLACED[form](scene, layout(scene.world, scene.ahead))
+    text = exports.DRAWN[form](scene, layout(scene.world, scene.ahead))
     file = tmp_path / "map"
     file.write_text(text)
     back = load(file, Reading())
@@ -597,7 +597,7 @@ def test_exported_maps_become_the_worlds_that_they_show(tmp_path, form):
 def test_a_tmap2_is_what_the_schema_of_topological_navigation_demands():
     """What their schema requires, written down here: which keys there must be, and that these are
     texts."""
-    told = yaml.safe_load(world_text(grid(2, 2), {}, "tmap2"))
+    told = yaml.safe_load(world_text(grid(2, 2), "tmap2"))
     assert {"meta", "metric_map", "name", "nodes", "pointset"} <= told.keys()
     day, clock = told["meta"]["last_updated"].split("_")
     assert [len(part) for part in (*day.split("-"), *clock.split("-"))] == [2, 2, 4, 2, 2, 2]

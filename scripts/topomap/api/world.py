@@ -1,9 +1,11 @@
-"""Worlds from files."""
+"""Worlds from files, and back."""
 
 from pathlib import Path
 
 from topomap.api.parts import path_of
+from topomap.exchange.worlds import form_of, world_text
 from topomap.runtime.checks import flag, number_if_given, whole_if_given
+from topomap.runtime.files import output
 from topomap.worlds import files
 from topomap.worlds.environment import Environment
 from topomap.worlds.plan import Reading
@@ -64,3 +66,24 @@ def world(
         number_if_given("straight", straight, 0),
         flag("two_way", two_way),
     ).environment
+
+
+def write_world(world: Environment, path: str | Path) -> None:
+    """Write a world to a file, with positions, slots, landmarks and the names of places; ``world``
+    reads it back as it was.
+
+    Parameters:
+        world: what ``world`` or ``generate`` takes.
+        path: the file; its name ends in ``.graphml``, ``.json`` (node-link) or ``.yaml`` (tmap2).
+
+    Raises:
+        TypeError: something else than a world or a path.
+        InputError: another end of the name, a name of a place that the format cannot hold, or a
+            file that cannot be written; one line.
+    """
+    if not isinstance(world, Environment):
+        raise TypeError(f"world must be what topomap.world gives, not {type(world).__name__}")
+    path = path_of(path)
+    text = world_text(world, form_of(path))
+    with output(str(path)) as file:
+        file.write(text)

@@ -2,6 +2,7 @@
 
 import argparse
 import contextlib
+from itertools import combinations
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -35,6 +36,7 @@ def add(group: Any) -> None:
   topomap generate torus 3 3 --route walk --steps 20 --seed 1
   topomap generate crescents 2 4 --route tour
   topomap generate grid 4 4 --route snake --compass --odometry 5 --seed 1
+  topomap generate grid 4 4 --route snake --world grid.graphml
   topomap generate world city.graphml --slots 4 --north 29 --route tour --signs 0.3""",
     )
     common = Parser(add_help=False)
@@ -57,6 +59,12 @@ def add(group: Any) -> None:
     add_senses(add)
     add("--name", help="name of the instance (default: made from the arguments)")
     add("--truth", metavar="FILE", help="also write the true hypothesis, for solve --truth")
+    add(
+        "--world",
+        metavar="FILE",
+        help="also write the world itself, with positions: as GraphML (.graphml), node-link JSON "
+        "(.json) or tmap2 (.yaml), by the end of the name",
+    )
     add("--json", action="store_true", help="print a summary as JSON")
     add("-o", "--output", metavar="FILE", help="file or folder to write (default: stdout)")
     add_environments(made, common, "--route tour")
@@ -64,6 +72,7 @@ def add(group: Any) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Explore an environment and write the instance."""
+    from topomap.exchange.worlds import form_of, world_text
     from topomap.model.found import steps_json
     from topomap.worlds.census import census
 
@@ -79,9 +88,14 @@ def run(args: argparse.Namespace) -> int:
     target = args.output
     if target and (target.endswith("/") or Path(target).is_dir()):
         target = str(Path(target) / f"{made.name}.lp")
-    if target and args.truth and Path(target).resolve() == Path(args.truth).resolve():
-        raise InputError(f"{target}: it cannot be both --output and --truth")
+    written = {"--output": target, "--truth": args.truth, "--world": args.world}
+    for one, other in combinations([name for name, file in written.items() if file], 2):
+        if Path(written[one]).resolve() == Path(written[other]).resolve():
+            raise InputError(f"{written[one]}: it cannot be both {one} and {other}")
+    text = world_text(world, form_of(args.world)) if args.world else ""
     with contextlib.ExitStack() as files:
+        if args.world:
+            files.enter_context(output(args.world)).write(text)
         if args.truth:
             truth = formats.line({"maps": [{"at": steps_json(made.truth)}]})
             files.enter_context(output(args.truth)).write(truth)

@@ -2,7 +2,9 @@
 
 import json
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 from topomap.exchange.robots import Edge, Node, tmap2_text
@@ -12,27 +14,18 @@ from topomap.runtime.errors import InputError, printable
 from topomap.worlds.environment import Environment
 from topomap.worlds.plan import Point
 
-Names = Mapping[Place, str]
 LISTS = ("ends", "move", "landmarks", "straight")
 _NO_XML = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 
 
-def world_text(
-    environment: Environment,
-    points: Mapping[Place, Point],
-    form: str,
-    north: float = 0.0,
-    names: Names | None = None,
-) -> str:
+def world_text(environment: Environment, form: str) -> str:
     """A world as the text of a file. Who reads it has the same slots, links, landmarks and moves,
-    and the same places by their labels.
+    and the same places by their labels. Where places are is told by the moves of a world that has
+    no points.
 
     Parameters:
         environment: the world.
-        points: where its places are; if there are none, this is told by its moves.
         form: ``graphml``, ``json`` (node-link) or ``tmap2``.
-        north: where slot 0 points, in degrees clockwise of north.
-        names: what places are called, if that is not their label.
 
     Raises:
         InputError: one line, if a name cannot be written in this format, if two places have one
@@ -44,8 +37,20 @@ def world_text(
     labels = [label(place) for place in environment.map.stars]
     if len({*labels}) < len(labels):
         raise InputError(f"{environment.name}: two places have one label")
-    where = dict(points) or points_of(environment)
-    return WRITERS[form](environment, where, north, names or {})
+    if not environment.points:
+        environment = replace(environment, points=points_of(environment))
+    return WRITERS[form](environment)
+
+
+FORMS = {".graphml": "graphml", ".json": "json", ".yaml": "tmap2", ".yml": "tmap2"}
+
+
+def form_of(file: str | Path) -> str:
+    """The format of a file to write, by the end of its name. Raises InputError."""
+    end = Path(file).suffix.lower()
+    if end not in FORMS:
+        raise InputError(f"{file}: a file with a world ends in {', '.join(FORMS)}")
+    return FORMS[end]
 
 
 def points_of(environment: Environment) -> dict[Place, Point]:
@@ -84,12 +89,11 @@ def _move(environment: Environment, out: Gateway) -> tuple[float, float] | None:
     return None if move is None else (move[0] + 0.0, move[1] + 0.0)  # -0 becomes 0
 
 
-def _graph(
-    environment: Environment, points: Mapping[Place, Point], north: float, names: Names
-) -> "nx.MultiGraph[str]":
-    world = environment.map
+def _graph(environment: Environment) -> "nx.MultiGraph[str]":
+    world, points, names = environment.map, environment.points, environment.names
     graph: nx.MultiGraph[str] = nx.MultiGraph()
-    graph.graph.update(name=printable(environment.name), slots=world.slots, north=float(north))
+    graph.graph.update(name=printable(environment.name), slots=world.slots)
+    graph.graph["north"] = float(environment.north)
     if (straight := _straight(environment)) is not None:
         graph.graph["straight"] = straight
     for place in world.stars:
@@ -106,11 +110,9 @@ def _graph(
     return graph
 
 
-def _graphml(
-    environment: Environment, points: Mapping[Place, Point], north: float, names: Names
-) -> str:
-    graph = _graph(environment, points, north, names)
-    for text in (*graph, *names.values()):
+def _graphml(environment: Environment) -> str:
+    graph = _graph(environment)
+    for text in (*graph, *environment.names.values()):
         if _NO_XML.search(text):
             raise InputError(f"{environment.name}: XML has no place for the name {printable(text)}")
     for attributes in (graph.graph, *graph.nodes.values(), *graph.edges.values()):
@@ -118,17 +120,13 @@ def _graphml(
     return "\n".join(nx.generate_graphml(graph, named_key_ids=True)) + "\n"
 
 
-def _node_link(
-    environment: Environment, points: Mapping[Place, Point], north: float, names: Names
-) -> str:
-    graph = _graph(environment, points, north, names)
+def _node_link(environment: Environment) -> str:
+    graph = _graph(environment)
     return json.dumps(formats.headed(nx.node_link_data(graph, edges="edges"))) + "\n"
 
 
-def _tmap2(
-    environment: Environment, points: Mapping[Place, Point], north: float, names: Names
-) -> str:
-    world = environment.map
+def _tmap2(environment: Environment) -> str:
+    world, points = environment.map, environment.points
     if lost := [place for place in world.stars if place not in points]:
         name = printable(label(lost[0]))
         raise InputError(f"{environment.name}: it is not told where place {name} is")
@@ -138,7 +136,7 @@ def _tmap2(
             points[place],
             sorted(star),
             sorted(world.landmarks.get(place, ())),
-            names.get(place),
+            environment.names.get(place),
         )
         for place, star in world.stars.items()
     ]
@@ -148,11 +146,11 @@ def _tmap2(
     ]
     straight = _straight(environment)
     return tmap2_text(
-        printable(environment.name), world.slots, float(north), nodes, edges, straight
+        printable(environment.name), world.slots, float(environment.north), nodes, edges, straight
     )
 
 
-WRITERS: dict[str, Callable[[Environment, Mapping[Place, Point], float, Names], str]] = {
+WRITERS: dict[str, Callable[[Environment], str]] = {
     "graphml": _graphml,
     "json": _node_link,
     "tmap2": _tmap2,

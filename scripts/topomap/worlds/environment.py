@@ -32,7 +32,9 @@ class Environment:
     ``call`` is the part of a ``topomap generate`` call that makes it; ``shape`` its
     rows and columns, where a route may count on them; ``notes`` go into headers. ``moves`` tells of
     each gateway how far its way leads, east and north: in hundredths of a way of a grid or a
-    lattice, in metres of a network, or in its own units where that is a plane.
+    lattice, in metres of a network, or in its own units where that is a plane. ``points`` tells
+    where places are, in the same units, ``names`` what they are called, if that is not their label,
+    and ``north`` where slot 0 points, in degrees clockwise of north.
     """
 
     name: str
@@ -41,6 +43,9 @@ class Environment:
     shape: tuple[int, int] | None = None
     notes: tuple[str, ...] = ()
     moves: Mapping[Gateway, Move] = field(default_factory=dict)
+    points: Mapping[Place, tuple[float, float]] = field(default_factory=dict)
+    names: Mapping[Place, str] = field(default_factory=dict)
+    north: float = 0.0
 
     def place(self, text: str) -> Place:
         """The place with this label. Raises InputError if there is none."""

@@ -68,8 +68,20 @@ def load(
     call += [] if straight is None else ["--straight", plain(straight)]
     call += _options(reading) + ["--two-way"] * bool(alone)
     notes = (f"slot 0 at {plain(at.north)} degrees clockwise of north", *plan.notes)
-    made = Environment(plan.name, tuple(call), world, None, notes, _moves(plan, at))
-    chosen = f"{file}: {_chosen(at)}" if slots is None or north is None else None
+    made = Environment(
+        plan.name,
+        tuple(call),
+        world,
+        None,
+        notes,
+        _moves(plan, at),
+        plan.points,
+        plan.names,
+        at.north,
+    )
+    kept = plan.slots and slots is None and north is None  # the file tells them
+    asked = slots is not None and north is not None
+    chosen = None if kept or asked else f"{file}: {_chosen(at)}"
     return Loaded(made, told, plan, at, chosen)
 
 
