@@ -6,6 +6,7 @@ import resource
 from dataclasses import replace
 
 import pytest
+import topomap
 import yaml
 from conftest import ROOT, run
 from oracles.worlds import random_world
@@ -13,7 +14,7 @@ from topomap.documents import maps
 from topomap.drawing.layout import layout
 from topomap.drawing.scenes import of_document
 from topomap.exchange import exports
-from topomap.exchange.worlds import WRITERS, points_of, world_text
+from topomap.exchange.worlds import FORMS, WRITERS, points_of, world_text
 from topomap.model.facts import parse
 from topomap.model.topology import TopologicalMap, label
 from topomap.runtime.errors import InputError
@@ -623,3 +624,37 @@ def test_the_command_explores_each_file(file):
     seen = parse(made.stdout, file)
     assert seen.steps >= 2
     assert any(seen.landmarks)
+
+
+@pytest.mark.parametrize("end", FORMS)
+def test_the_world_that_is_explored_is_written(tmp_path, end):
+    call = "topomap", "generate", "grid", "2", "3", "--route", "tour", "--signs", "1"
+    file = tmp_path / f"world{end}"
+    done = run(*call, "--world", file)
+    assert done.returncode == 0
+    assert done.stdout == run(*call).stdout
+    back = topomap.world(file)
+    world = topomap.world(file).map
+    assert relabelled(world) == relabelled(grid(2, 3).signed(1, 0).map)
+    topomap.write_world(back, tmp_path / f"again{end}")
+    assert topomap.world(tmp_path / f"again{end}").points == back.points != {}
+
+
+def test_a_world_that_cannot_be_written_leaves_no_file(tmp_path):
+    call = "topomap", "generate", "grid", "2", "2", "--route", "tour"
+    for options, said in (
+        (
+            ("--world", tmp_path / "w.lp"),
+            "a file with a world ends in .graphml, .json, .yaml, .yml",
+        ),
+        (("--world", tmp_path / "w.json", "-o", tmp_path / "w.json"), "both --output and --world"),
+        (("--world", tmp_path / "w.json", "--truth", tmp_path / "w.json"), "--truth and --world"),
+    ):
+        done = run(*call, *options)
+        assert (done.returncode, done.stdout) == (2, "")
+        assert said in done.stderr
+    assert not [*tmp_path.iterdir()]
+    with pytest.raises(TypeError, match=r"what topomap\.world gives, not str"):
+        topomap.write_world("world", tmp_path / "w.json")
+    with pytest.raises(InputError, match="ends in"):
+        topomap.write_world(grid(2, 2), tmp_path / "w")

@@ -92,7 +92,8 @@ def run(args: argparse.Namespace) -> int:
     for one, other in combinations([name for name, file in written.items() if file], 2):
         if Path(written[one]).resolve() == Path(written[other]).resolve():
             raise InputError(f"{written[one]}: it cannot be both {one} and {other}")
-    text = world_text(world, form_of(args.world)) if args.world else ""
+    signed = world if args.signs is None else world.signed(args.signs, args.seed or 0)
+    text = world_text(signed, form_of(args.world)) if args.world else ""
     with contextlib.ExitStack() as files:
         if args.world:
             files.enter_context(output(args.world)).write(text)

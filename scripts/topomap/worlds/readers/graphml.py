@@ -34,9 +34,9 @@ NO, YES = {"false", "0", "no"}, {"true", "1", "yes"}  # what is written of one-w
 
 
 def fits(name: str, content: bytes) -> bool:
-    """Whether a file is GraphML, or is called so."""
+    """Whether a file is GraphML."""
     begins = content[:4000].lstrip(b"\xef\xbb\xbf \t\r\n").lower()
-    return name.endswith(".graphml") or (begins[:1] == b"<" and b"graphml" in begins)
+    return begins[:1] == b"<" and b"graphml" in begins
 
 
 def read(file: str, content: bytes, reading: Reading) -> Plan:
