@@ -59,6 +59,8 @@ def test_a_cave():
     }
     assert made.points[one] == (500, 1000)
     assert made.points[mud] == pytest.approx((530.48 + 10 / math.sqrt(2), 1030.48), abs=1e-6)
+    alone = plan(FILES / "cave/upper.svx").points  # where nothing is fixed, the first station is
+    assert (alone["upper.1"], len(alone)) == ((0, 0), 4)
     assert [line.partition(": ")[2] for line in made.told] == [
         "splay legs left out: 4",
         "surface legs left out: 1",

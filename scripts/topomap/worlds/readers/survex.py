@@ -166,13 +166,22 @@ class _Net:
                 yield chain
 
     def points(self) -> dict[int, Point]:
-        """Where stations are: from those that are fixed along the legs, without any adjustment."""
+        """Where stations are: from those that are fixed along the legs, without any adjustment. In
+        a part where none is fixed, the station that came first is, as Survex does it."""
         where: dict[int, Point] = {}
         for name, point in self.survey.fixed.items():
             station = self.survey.top(self.survey.stations[name])
             if point is not None and station in self.at:
                 where.setdefault(station, point)
-        waiting = [*where]
+        self._spread(where, [*where])
+        for station in sorted(self.at):
+            if station not in where:
+                where[station] = (0.0, 0.0)
+                self._spread(where, [station])
+        return where
+
+    def _spread(self, where: dict[int, Point], waiting: list[int]) -> None:
+        """Where the stations are that legs join with these."""
         while waiting:
             later = []
             for here in waiting:
@@ -183,7 +192,6 @@ class _Net:
                         where[there] = east + sign * leg.east, north + sign * leg.north
                         later.append(there)
             waiting = later
-        return where
 
 
 def _without_duplicates(legs: list[Leg]) -> tuple[list[Leg], int]:
