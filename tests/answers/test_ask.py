@@ -503,8 +503,7 @@ def test_a_long_exploration_goes_through_the_phases():
     experience = read(ROOT / "instances/manhattan-tour88-signs30.lp")
     query = Query(frozenset(["planar", "closed", "perpendicular"]))
     (found,) = hypotheses(experience, query, Watch())
-    seen = experience.slots, experience.views, (None, *experience.turns), experience.landmarks
-    whole = {found.at: Hypothesis(seen, found.at)}
+    whole = {found.at: Hypothesis(plain(experience), found.at)}
     draw = random.Random("manhattan")
     texts, tests = zip(*(statement(draw, experience) for _ in range(60)), strict=True)
     demand(settled(experience, texts, query), experience, tests, whole, sorted(query.parts))
