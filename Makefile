@@ -24,7 +24,7 @@ BIN     := .venv/bin
 SETUP   := .venv/set-up
 TOOLS   := .venv/tools
 BATCH   := build/instances
-MAKERS  := $(wildcard scripts/topomap/worlds/*.py) $(addprefix scripts/topomap/model/, \
+MAKERS  := $(wildcard scripts/topomap/worlds/*.py scripts/topomap/worlds/readers/*.py) $(addprefix scripts/topomap/model/, \
              experience.py topology.py)
 PIP     := $(BIN)/python -m pip --quiet --disable-pip-version-check
 
