@@ -427,7 +427,7 @@ HOSTILE = [
     ("exits,taken\n0 90 E,0\n0,\n", ":2: step 0: 'E': compass letters and degrees are mixed"),
     ("exits,taken\n0 90,0\nS,\n", ":3: step 1: 'S': compass letters and degrees are mixed"),
     ("exits,taken\nN,N\nS,\n", ":3: step 1: which exit one arrived by is not told"),
-    ("exits;taken\n0 12,5;0\n0;\n", ":2: step 0: '12,5' is no bearing"),
+    ("exits;taken\n0 12,5,6;0\n0;\n", ":2: step 0: '12.5.6' is no bearing"),
     ("exits,taken\n0 0,0\n0,\n", ":2: step 0: exits: 0 stands there twice"),
     ("exits,taken\n0 360,0\n0,\n", ":2: step 0: exits: 0 stands there twice"),
     ("exits,taken\n0 1 359.9999999999,0\n0,\n", ":2: step 0: exits: 360 stands there twice"),

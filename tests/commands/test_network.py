@@ -1,6 +1,7 @@
 """Worlds from street networks in GraphML."""
 
 import json
+import math
 import os
 import random
 
@@ -12,7 +13,7 @@ from oracles.worlds import random_world
 from topomap.model.facts import parse
 from topomap.runtime.errors import InputError
 from topomap.worlds.census import census, classes, look
-from topomap.worlds.courses import Layout, clashes, exits_of, layout
+from topomap.worlds.courses import Layout, clashes, exit_towards, exits_of, layout, links_of
 from topomap.worlds.environment import grid
 from topomap.worlds.files import load
 from topomap.worlds.plan import Exit, Plan, Reading, Way
@@ -300,15 +301,125 @@ def test_the_fewest_slots_and_the_best_turn_are_chosen():
         plan, exits = Plan("drawn", ways), exits_of(ways)
         at = layout("drawn", plan)
         for off in (-0.999, -0.5, 0, 0.5, 0.999):
-            assert not clashes(ways, exits, at._replace(north=at.north + off * at.margin))
-        turned = [at.north + sign * (at.margin + 1e-6) for sign in (1, -1)]
-        whole = at.margin >= 180 / at.slots
+            turn = at.north + off * min(at.margin, 180)
+            assert not clashes(ways, exits, at._replace(north=turn))
+        whole = math.isinf(at.margin)
+        turned = [] if whole else [at.north + sign * (at.margin + 1e-6) for sign in (1, -1)]
         assert whole or any(clashes(ways, exits, at._replace(north=turn)) for turn in turned)
         for fewer in range(4, at.slots, 2):
             turns = (n * 360 / fewer / 500 for n in range(500))
             free = [turn for turn in turns if not clashes(ways, exits, Layout(fewer, turn, 0))]
             assert not free
         TRIED["layouts of slots compared with trying"] += 1
+
+
+def test_exits_on_the_border_of_two_slots_are_never_one():
+    """Bearings of whole coordinates lie on borders of slots, where rounding might decide."""
+    for number in range(3_000):
+        draw = random.Random(f"borders {number}")
+        spots = draw.sample([(x, y) for x in range(-2, 3) for y in range(-2, 3) if x or y], 5)
+        ways = tuple(
+            Way((exit_towards("p", (0, 0), spot), exit_towards(f"q{n}", spot, (0, 0))))
+            for n, spot in enumerate(spots[: draw.randint(2, 5)])
+        )
+        asked = draw.choice([(None, None), (8, None), (4, draw.choice([0, 45])), (28, None)])
+        try:
+            at = layout("drawn", Plan("drawn", ways), *asked)
+        except InputError:
+            continue
+        assert len(links_of(ways, at)) == 2 * len(ways)
+        assert not clashes(ways, exits_of(ways), at)
+        TRIED["layouts of exits on borders"] += 1
+    split = [("a", 45.0, "b", 225.0), ("a", 135.0, "b", 315 - 1e-13), ("a", 270.0, "c", 90.0)]
+    ways = tuple(Way((Exit(one, out), Exit(two, back))) for one, out, two, back in split)
+    assert len(links_of(ways, layout("split", Plan("split", ways)))) == 6
+    with pytest.raises(RuntimeError, match="share a slot"):
+        links_of(ways, Layout(2, 0.0, 0.0))
+
+
+def test_two_short_ways_between_two_places_part(tmp_path):
+    """Though both are shorter than the part of them by which directions are taken."""
+    graph = nx.MultiGraph(crs="plane")
+    for name, x in (("a", 0), ("b", 6), ("c", 300)):
+        graph.add_node(name, x=float(x), y=0.0)
+    graph.add_edge("a", "b", geometry="LINESTRING (0 0, 3 2, 6 0)")
+    graph.add_edge("a", "b", geometry="LINESTRING (0 0, 3 -2, 6 0)")
+    graph.add_edge("b", "c")
+    loaded = load(write(tmp_path, graph))
+    assert (loaded.layout.slots, len(loaded.environment.map.links)) == (4, 6)
+
+
+@pytest.mark.parametrize("kind", [nx.MultiDiGraph, nx.MultiGraph])
+@pytest.mark.parametrize(
+    "fault",
+    ["None", "LINESTRING EMPTY", "POINT (0 0)", "[5]", "[[0,0],[1]]", "LINESTRING (0 0, x y)"],
+)
+def test_a_bad_course_is_named_whatever_the_graph(tmp_path, kind, fault):
+    graph = square(kind)
+    join(graph, "a", "c", geometry=fault)
+    with pytest.raises(InputError, match="the way from place a to c: its geometry"):
+        load(write(tmp_path, graph))
+
+
+def test_a_course_may_be_written_from_either_end_of_both_edges(tmp_path):
+    """As networkx writes it that makes a graph directed."""
+    graph = square()
+    join(graph, "a", "c", geometry="LINESTRING (0 0, 60 30, 100 100)")
+    loaded = load(write(tmp_path, graph), two_way=False)
+    assert len(loaded.plan.ways) == 5
+    graph.add_edge("b", "d", geometry="LINESTRING (400 400, 500 500)")
+    said = load(write(tmp_path, graph), two_way=True).warnings
+    assert [line.partition(": ")[2] for line in said] == [
+        "ways whose course does not end at their places: b to d",
+        "one-way ways taken as two-way: 1",
+    ]
+
+
+@pytest.mark.parametrize(
+    ("crs", "scale", "degrees"),
+    [
+        ("EPSG:4326", 0.001, True),
+        ("epsg:4283", 0.001, True),
+        ("urn:ogc:def:crs:EPSG::4258", 0.001, True),
+        ("OGC:CRS84", 0.001, True),
+        ("+proj=longlat +datum=WGS84", 0.001, True),
+        ("EPSG:32633", 1000, False),
+        ("EPSG:4978", 1000, False),
+        ('PROJCRS["WGS 84 / UTM zone 33N",BASEGEOGCRS["WGS 84",ID["EPSG",4326]]]', 1000, False),
+        ('PROJCS["UTM",GEOGCS["WGS 84",AUTHORITY["EPSG","4326"]]]', 1000, False),
+        ('GEOGCRS["WGS 84",ID["EPSG",4326]]', 0.001, True),
+    ],
+)
+def test_what_the_coordinates_are_is_told_by_the_crs(tmp_path, crs, scale, degrees):
+    loaded = load(write(tmp_path, square(scale=scale, crs=crs)))
+    wanted = "longitude and latitude" if degrees else "plane"
+    assert f"coordinates: {wanted}" in loaded.plan.notes
+    assert not loaded.warnings
+
+
+def test_coordinates_that_cannot_be_what_they_are_taken_for(tmp_path):
+    with pytest.raises(InputError, match=r"no longitude and latitude \(--plane\)"):
+        load(write(tmp_path, square(scale=1000, crs="EPSG:4326")))
+    (said,) = load(write(tmp_path, square(scale=0.1, crs="EPSG:9999"))).warnings
+    assert "crs epsg:9999 is not known, and taken to be of a plane (--degrees)" in said.lower()
+
+
+def test_ten_thousand_places_come_to_an_end(tmp_path):
+    """A street, of which each dstate is told from the others by how far it is to the ends, and a
+    star: what is asked of each place must not ask all others, which would take hours."""
+    street, star = nx.Graph(crs="plane"), nx.Graph(crs="plane")
+    for number in range(10_000):
+        street.add_node(number, x=10.0 * number, y=0.0)
+        angle = math.radians(2 * number)
+        star.add_node(number, x=100 * math.cos(angle), y=100 * math.sin(angle))
+    street.add_edges_from((n, n + 1) for n in range(9_999))
+    star.add_node("middle", x=0.0, y=0.0)
+    star.add_edges_from((n, "middle") for n in range(180))
+    world = load(write(tmp_path, street)).environment.map
+    known = census(world)
+    assert (known.places, known.dead_ends, known.dstates) == (10_000, 2, 19_998)
+    assert (known.classes, known.with_compass) == (9_999, 19_998)
+    assert load(write(tmp_path, star)).plan.points.keys() == {*map(str, range(180)), "middle"}
 
 
 def test_what_nothing_parts_is_listed():

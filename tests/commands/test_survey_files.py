@@ -212,9 +212,13 @@ def test_duplicates_that_alone_join_a_passage_are_kept(tmp_path):
 @pytest.mark.parametrize(
     ("text", "line", "fault"),
     [
-        ("*data diving from to tape compass fromdepth todepth", 1, "data style diving is not"),
-        ("\n*data nosurvey from to", 2, "data style nosurvey is not read"),
-        ("*data cylpolar from to tape compass fromdepth todepth", 1, "data style cylpolar"),
+        ("*data diving from to tape fromdepth todepth", 1, "data diving without: compass"),
+        ("*data cylpolar from to tape compass clino", 1, "the reading clino is not read"),
+        (
+            "*data diving from to tape compass depthchange\n1 2 5 0 9",
+            2,
+            "the depths differ by more",
+        ),
         ("*data normal station newline tape compass clino", 1, "legs on several lines"),
         ("*data normal from to tape compass newline", 1, "legs on several lines"),
         ("*data normal from to fromcount tocount compass", 1, "reading fromcount is not read"),
@@ -495,7 +499,7 @@ def test_what_the_yaml_file_says(tmp_path):
         ({"mode": "grey"}, "mode: it must be one of: trinary, scale, raw"),
         ({"negate": None}, "negate is not given"),
         ({"free_thresh": "0.2\nfree_thresh: 0.3"}, "free_thresh is given twice"),
-        ({"image": "/etc/passwd"}, "outside of the folder"),
+        ({"image": "/etc/passwd"}, "is not there"),
         ({"image": "../floor.pgm"}, "outside of the folder"),
         ({"image": "link.pgm"}, "outside of the folder"),
         ({"image": "none.pgm"}, "none.pgm is not there"),

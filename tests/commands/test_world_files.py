@@ -450,7 +450,7 @@ HOSTILE_XML = {
     ): "document type or entities",
     trizbort(line())[:-20]: ":1: not whole XML",
     trizbort(line("north")): "line 3: port north is none of n, nne",
-    trizbort(line() + line()): "room 1: two lines end at its port e, to rooms 2 and 2",
+    trizbort(line() + line(other="e")): "room a: two lines end at its port e, to b and b",
     trizbort('<room id="1" x="0" y="0"/>'): "a room 1: its id is there twice",
     trizbort('<room x="0" y="0"/>'): "a room has no id",
     trizbort('<room id="4" x="1e99" y="0"/>'): "room 4: its x, y, w and h are no finite numbers",

@@ -1,8 +1,7 @@
 """The maps that ``draw``, ``show`` and ``export`` choose from: the best ones of an instance, or
 those in a file of maps."""
 
-from collections.abc import Callable, Sequence
-from contextlib import suppress
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import NamedTuple, overload
 
@@ -19,7 +18,8 @@ from topomap.model.query import Query
 from topomap.runtime.errors import InputError
 from topomap.runtime.files import read_text
 from topomap.runtime.watch import Watch
-from topomap.worlds.files import load
+from topomap.worlds.files import Loaded, load
+from topomap.worlds.plan import Reading
 
 MANY = 1000  # optimal maps; if there are more, they are not all looked for
 # The share of the time for the search of optimal maps; and if none is found then, the share of the
@@ -115,15 +115,37 @@ def drawn_like(scene: Scene, file: str) -> tuple[Scene, str]:
     ready()
     from topomap.drawing.likeness import likeness
 
-    loaded = load(file, two_way=True)
-    if loaded.layout.slots != scene.world.slots:
-        with suppress(InputError):  # so many slots may not part all ways
-            loaded = load(file, slots=scene.world.slots, two_way=True)
-    found = likeness(scene.world, loaded.environment.map, loaded.plan)
+    tried = []
+    for loaded in _readings(file, scene.world.slots):
+        world = loaded.environment.map
+        tried.append(likeness(scene.world, world, loaded.plan, scene.where()))
+        if tried[-1].laid:
+            break
+    found = max(tried, key=lambda one: (one.laid, one.where is not None))
     told = f"map {scene.number}: {found.note}" if found.note else ""
     if found.where is None:
         return scene, f"{told}; it is drawn as usual"
     return replace(scene, like=found.where), told
+
+
+def _readings(file: str, slots: int) -> Iterator[Loaded]:
+    """The world in a file, read in each way in which it may have been read when the map was made:
+    with the slots that are chosen, or so many, and with its loops or without them. Raises
+    InputError if it cannot be read in any of them."""
+    faults, given = [], 0
+    for number in range(4):
+        chosen, loops = number % 2 == 0, number > 1
+        try:
+            loaded = load(file, Reading(loops=loops), None if chosen else slots, two_way=True)
+        except InputError as fault:  # a loop may have no course, and so many slots may be too few
+            faults.append(fault)
+            continue
+        given += 1
+        yield loaded
+        if loaded.layout.slots == slots and not any("loops" in one for one in loaded.warnings):
+            return
+    if not given:
+        raise faults[0]
 
 
 def _some(watch: Watch, experience: Experience, query: Query) -> list[Found]:

@@ -20,18 +20,25 @@ from topomap.worlds.plan import Plan
 ENOUGH = 3  # places that are found by name, for the others to be put between them
 ROUNDS = 300  # in which those are
 WORK = 2_000_000  # gateways that are looked at, at most
-SEVERAL = 2  # ways to lay a map onto a world: more are not looked for
+SEVERAL = 16  # ways to lay a map onto a world: more are not looked for
+ALIKE = 0.05  # of the size: drawings that differ by less from what is known are as good
 
 
 class Likeness(NamedTuple):
-    """Where the places of a map are, None if that is not told; and what there is to say of it."""
+    """Where the places of a map are, None if that is not told; what there is to say of it; and
+    whether the map is a part of the world."""
 
     where: Where | None
     note: str
+    laid: bool = False
 
 
-def likeness(world: TopologicalMap, real: TopologicalMap, plan: Plan) -> Likeness:
-    """Where the places of a map are, by the places of a real world and the plan of it."""
+def likeness(
+    world: TopologicalMap, real: TopologicalMap, plan: Plan, known: Where | None = None
+) -> Likeness:
+    """Where the places of a map are, by the places of a real world and the plan of it. If the map
+    can be laid onto the world in several ways, that which is most like ``known``, what was measured
+    of where places are, is taken."""
     if not all(place in plan.points for place in real.stars):
         return Likeness(None, "the world does not tell where its places are")
     names = _names(real, plan)
@@ -42,14 +49,32 @@ def likeness(world: TopologicalMap, real: TopologicalMap, plan: Plan) -> Likenes
         if found:
             break
     if found:
-        where = {place: plan.points[there] for place, there in found[0].items()}
+        laid = [{place: plan.points[there] for place, there in one.items()} for one in found]
+        unlike = [_unlike(one, known or {}) for one in laid]
+        least = min(unlike)
         several = "it can be laid onto the world in several ways, of which this is one"
-        return Likeness(where, several if len(found) > 1 else "")
+        many = sum(one < least + ALIKE for one in unlike) > 1
+        return Likeness(laid[unlike.index(least)], several if many else "", laid=True)
     if len(named) >= ENOUGH:
         at = {place: plan.points[there] for place, there in named.items()}
         told = f"{len(named)} places are found by their names, and the others put between them"
         return Likeness(_between(world, at), f"it is no part of the world: {told}")
     return Likeness(None, "it is no part of the world, as its links tell, and names do not help")
+
+
+def _unlike(where: Where, known: Where) -> float:
+    """How far places are from where they were measured, moved and in another scale but not turned,
+    as a share of the size; 0 if too little is known."""
+    both = [place for place in where if place in known]
+    if len(both) < 2:
+        return 0.0
+    one, other = (np.array([points[place] for place in both], float) for points in (known, where))
+    one, other = one - one.mean(0), other - other.mean(0)
+    size, norm = float((one**2).sum()), float(np.linalg.norm(other))
+    if size == 0 or norm == 0:
+        return 0.0
+    scale = max(0.0, float((one * other).sum()) / size)
+    return float(np.linalg.norm(scale * one - other)) / norm
 
 
 def _names(real: TopologicalMap, plan: Plan) -> dict[str, Place]:

@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 from topomap.model.topology import Gateway, Place, TopologicalMap
 
 MOST_PATHS = 2_000  # of each two of these it is asked whether they meet
+MOST_PLACES = 20_000  # on them
 
 
 class Census(NamedTuple):
@@ -66,7 +67,7 @@ def census(world: TopologicalMap) -> Census:
     """What a world is."""
     fault = world.path_axiom_fault()
     paths = world.paths()
-    small = fault is None and len(paths) <= MOST_PATHS
+    small = fault is None and len(paths) <= MOST_PATHS and len(world.stars) <= MOST_PLACES
     looks = {gateway: look(world, gateway) for gateway in world.gateways()}
     edges = world.edges()
     return Census(
@@ -96,24 +97,47 @@ def look(world: TopologicalMap, gateway: Gateway) -> tuple[Any, ...]:
 
 def classes(world: TopologicalMap, looks: Mapping[Gateway, Any]) -> dict[Gateway, int]:
     """Of each dstate its class: no walk tells two of a class apart by what is seen, ``looks``. The
-    coarsest partition in which equal turns lead from one class to one class; it is refined until
-    it is that. Gateways that are not linked lead nowhere."""
-    number: dict[Any, int] = {}
-    of = {gateway: number.setdefault(seen, len(number)) for gateway, seen in looks.items()}
-    many = len(number)
-    turns = {gateway: sorted(world.view(gateway)) for gateway in of}
-    while True:
-        number = {}
-        finer = {}
-        for (place, slot), known in of.items():
-            ends = [
-                world.links.get((place, (slot + turn) % world.slots)) for turn in turns[place, slot]
-            ]
-            leads = tuple(-1 if end is None else of[end] for end in ends)
-            finer[place, slot] = number.setdefault((known, leads), len(number))
-        if len(number) == many:
-            return of
-        of, many = finer, len(number)
+    coarsest partition in which equal turns lead from one class to one class, by Hopcroft's
+    algorithm: of two parts of a class the smaller one parts others. Gateways that are not linked
+    lead nowhere."""
+    before: dict[Gateway, list[tuple[int, Gateway]]] = {gateway: [] for gateway in looks}
+    blocks: dict[Any, set[Gateway]] = {}
+    for (place, slot), seen in looks.items():
+        open_ = []
+        for turn in world.view((place, slot)):
+            end = world.links.get((place, (slot + turn) % world.slots))
+            if end is None:
+                open_.append(turn)
+            else:
+                before[end].append((turn, (place, slot)))
+        blocks.setdefault((seen, tuple(sorted(open_))), set()).add((place, slot))
+    parts = [*blocks.values()]
+    of = {gateway: number for number, part in enumerate(parts) for gateway in part}
+    waiting = {*range(len(parts))}
+    while waiting:
+        number = waiting.pop()
+        leading: dict[int, dict[int, set[Gateway]]] = {}  # by turn and class
+        for end in parts[number]:
+            for turn, gateway in before[end]:
+                leading.setdefault(turn, {}).setdefault(of[gateway], set()).add(gateway)
+        for met in leading.values():
+            for gateways in [*met.values()]:
+                # They were of one class when this began; since then it may have been parted.
+                now: dict[int, set[Gateway]] = {}
+                for gateway in gateways:
+                    now.setdefault(of[gateway], set()).add(gateway)
+                for block, inside in now.items():
+                    if len(inside) == len(parts[block]):
+                        continue
+                    parts[block] -= inside
+                    new = len(parts)
+                    smaller = inside if len(inside) <= len(parts[block]) else parts[block]
+                    larger = parts[block] if smaller is inside else inside
+                    parts[block] = larger
+                    parts.append(smaller)
+                    of.update(dict.fromkeys(smaller, new))
+                    waiting.add(new)
+    return of
 
 
 def perpendicular(paths: list[list[Gateway]]) -> bool:

@@ -5,7 +5,8 @@ is nearest to its bearing. No two exits of a place may have one slot.
 """
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections import Counter
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from itertools import pairwise
 from typing import NamedTuple
 
@@ -16,19 +17,23 @@ from topomap.worlds.plan import Exit, Plan, Point, Way
 
 FEWEST, MOST = 4, 360  # slots that are tried; with four, straight on and a turn can be told apart
 SHOWN = 20  # clashes that are listed
+DIGITS = 9  # of bearings and slots that count: what is less is an error of rounding
 
 
 class Layout(NamedTuple):
     """A number of slots, where slot 0 points (degrees clockwise of north), and by how many degrees
-    that may be turned either way before two exits of a place share a slot."""
+    that may be turned either way before two exits of a place share a slot; infinite if none will,
+    however they are turned."""
 
     slots: int
     north: float
     margin: float
 
     def slot(self, bearing: float) -> int:
-        """The slot whose direction is nearest to a bearing."""
-        return math.floor((bearing - self.north) * self.slots / 360 + 0.5) % self.slots
+        """The slot whose direction is nearest to a bearing; of two that are as near, the one
+        clockwise of it."""
+        slot = round((bearing - self.north) * self.slots / 360 + 0.5, DIGITS)
+        return math.floor(slot) % self.slots
 
 
 class Clash(NamedTuple):
@@ -54,7 +59,7 @@ def exits_of(ways: Iterable[Way]) -> dict[Place, list[tuple[float, int, int]]]:
     exits: dict[Place, list[tuple[float, int, int]]] = {}
     for number, way in enumerate(ways):
         for end, (place, bearing) in enumerate(way.ends):
-            exits.setdefault(place, []).append((bearing % 360, number, end))
+            exits.setdefault(place, []).append((round(bearing, DIGITS) % 360, number, end))
     return {place: sorted(of) for place, of in sorted(exits.items())}
 
 
@@ -68,16 +73,18 @@ def layout(file: str, plan: Plan, slots: int | None = None, north: float | None 
         raise InputError(f"{file}: north {north}: it must be a finite number of degrees")
     exits = exits_of(plan.ways)
     gaps = [gap for of in exits.values() for gap in _gaps(of)]
-    if slots is None and north is None and plan.slots:
-        slots, north = plan.slots, plan.north
+    if slots is None and plan.slots:
+        slots, north = plan.slots, plan.north if north is None else north
     for many in range(FEWEST, MOST + 1, 2) if slots is None else [slots]:
         if slots is None and max(map(len, exits.values()), default=0) > many:
             continue
         turn, margin = (
             _best_turn(gaps, many) if north is None else (north, _margin(gaps, many, north))
         )
-        if margin >= 0:
-            return Layout(many, turn, margin)
+        at = Layout(many, turn, margin)
+        # Exits on the border of two slots are the ones that might clash though the margin is none.
+        if margin >= 0 and not clashes(plan.ways, exits, at):
+            return at
     most = Layout(MOST if slots is None else slots, north or 0.0, 0.0)
     found = clashes(plan.ways, exits, most)
     told = "; ".join(clash.text() for clash in found[:SHOWN])
@@ -110,7 +117,7 @@ def _best_turn(gaps: list[tuple[float, float]], slots: int) -> tuple[float, floa
             end = begin + width - (other - one)
             bad += [(begin, min(end, width))] + [(0.0, end - width)] * (end > width)
     if not bad:
-        return 0.0, width / 2
+        return 0.0, math.inf
     free, reached = [], 0.0
     for begin, end in sorted(bad):
         if begin > reached:
@@ -123,6 +130,7 @@ def _best_turn(gaps: list[tuple[float, float]], slots: int) -> tuple[float, floa
     begin, end = max(free, key=lambda part: part[1] - part[0], default=(0.0, -1.0))
     turn = (begin + end) / 2 % width
     turn -= width if turn > width / 2 else 0
+    turn = round(turn, DIGITS) + 0.0  # -0 becomes 0
     return turn, min((end - begin) / 2, _margin(gaps, slots, turn))
 
 
@@ -130,7 +138,7 @@ def _margin(gaps: list[tuple[float, float]], slots: int, north: float) -> float:
     """By how many degrees slots may be turned either way before two exits share one; negative if
     they do."""
     width = 360 / slots
-    margin = width / 2
+    margin = math.inf
     for one, other in gaps:
         if other - one >= width:
             continue
@@ -161,6 +169,8 @@ def links_of(ways: Iterable[Way], at: Layout) -> dict[Gateway, Gateway]:
     links: dict[Gateway, Gateway] = {}
     for way in ways:
         one, other = ((place, at.slot(bearing)) for place, bearing in way.ends)
+        if one in links or other in links or one == other:
+            raise RuntimeError("two exits share a slot")  # layout sees to it that none do
         links[one], links[other] = other, one
     return links
 
@@ -215,20 +225,27 @@ def _pairs(plan: Plan, at: Layout) -> dict[Gateway, Gateway] | None:
     return {out: other for one, two in pairs for out, other in ((one, two), (two, one))}
 
 
+def shares(ends: Iterable[tuple[Place, Place]]) -> Callable[[Place, Place], float]:
+    """At which share of the way between two places its direction is taken at most: in the middle if
+    there are several ways between them, as these part there and not at the other end."""
+    many = Counter(frozenset(pair) for pair in ends)
+    return lambda one, other: 0.5 if many[frozenset((one, other))] > 1 else 1.0
+
+
 def exit_towards(place: Place, here: tuple[float, float], there: tuple[float, float]) -> Exit:
     """The exit of a place at a point, in the direction of another point of the plane."""
     return Exit(place, math.degrees(math.atan2(there[0] - here[0], there[1] - here[1])))
 
 
-def point_along(course: Sequence[Point], far: float) -> Point:
-    """The point so far along a way, or its other end if it is not so long; of a way back to the
-    same place, at most a third of it."""
-    if course[0] == course[-1]:
-        far = min(far, sum(math.dist(*pair) for pair in pairwise(course)) / 3)
+def point_along(course: Sequence[Point], far: float, share: float = 1.0) -> Point:
+    """The point so far along a way, but at most at this share of it; of a way back to the same
+    place, at most a third along it."""
+    long = sum(math.dist(*pair) for pair in pairwise(course))
+    far = min(far, long * min(share, 1 / 3 if course[0] == course[-1] else 1.0))
     for one, other in pairwise(course):
         long = math.dist(one, other)
-        if long >= far > 0:
-            share = far / long
+        if 0 < long >= far:
+            share = far / long if far > 0 else 1.0  # 0: as the way begins
             return one[0] + share * (other[0] - one[0]), one[1] + share * (other[1] - one[1])
         far -= long
     return course[-1]

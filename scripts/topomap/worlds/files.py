@@ -9,10 +9,13 @@ from topomap.model.topology import Gateway, label
 from topomap.runtime import nx
 from topomap.runtime.errors import InputError
 from topomap.worlds import readers
-from topomap.worlds.courses import SHOWN, Layout, layout, world_of
+from topomap.worlds.courses import Layout, layout, world_of
 from topomap.worlds.environment import Environment, plain
 from topomap.worlds.plan import Plan, Reading, Way
 from topomap.worlds.senses import Move
+
+NAMED = 5  # ways that a message names
+NARROW = 3.0  # degrees by which slots may be turned, until it is told that they are few
 
 
 class Loaded(NamedTuple):
@@ -59,7 +62,17 @@ def load(
     told = [*plan.told]
     if alone:
         told.append(f"{file}: one-way ways taken as two-way: {len(alone)}")
-    at = layout(str(file), plan, slots, north)
+    try:
+        at = layout(str(file), plan, slots, north)
+    except InputError as error:
+        if not plan.guessed:
+            raise
+        raise InputError(f"{error} ({plan.guessed})") from None
+    if slots is None and at.margin < NARROW:
+        told.append(
+            f"{file}: exits are parted by {at.margin:.2g} degrees only; --slots says how many "
+            "slots there are, and --straight which exits are on one path"
+        )
     world = world_of(plan, at, straight)
     graph = nx.Graph((one[0], other[0]) for one, other in world.links.items())
     if (parts := nx.number_connected_components(graph)) > 1:
@@ -97,12 +110,14 @@ def _options(reading: Reading) -> list[str]:
 def _named(ways: Iterable[Way]) -> str:
     """Some ways by their ends."""
     names = [" to ".join(label(end.place) for end in way.ends) for way in ways]
-    return ", ".join(names[:SHOWN]) + (f" and {len(names) - SHOWN} more" * (len(names) > SHOWN))
+    return ", ".join(names[:NAMED]) + (f" and {len(names) - NAMED} more" * (len(names) > NAMED))
 
 
 def _chosen(at: Layout) -> str:
     turned = f"slot 0 at {at.north:.6g} degrees clockwise of north"
     free = f"they may be turned by {at.margin:.3g} degrees either way before two exits share one"
+    if math.isinf(at.margin):
+        free = "no two exits share one, however they are turned"
     return f"{at.slots} slots chosen, {turned}; {free}"
 
 

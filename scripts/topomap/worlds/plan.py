@@ -42,7 +42,7 @@ class Plan:
     0 in the direction ``north``, in degrees clockwise of north; None if bearings may be any.
     ``straight`` holds the pairs of exits of a place that are on one path; None if opposite ones
     are. ``notes`` go into the header of an instance, and ``told`` are warnings, each one line that
-    names the file.
+    names the file; ``guessed`` says what the coordinates were taken for, if the file does not tell.
     """
 
     name: str
@@ -55,6 +55,7 @@ class Plan:
     straight: tuple[tuple[Exit, Exit], ...] | None = None
     notes: tuple[str, ...] = ()
     told: tuple[str, ...] = ()
+    guessed: str = ""
 
 
 @dataclass(frozen=True)

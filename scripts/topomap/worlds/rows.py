@@ -23,6 +23,7 @@ COLUMNS = {
     "length": "how long the way is that is taken",
     "east": "how far to the east the way that is taken leads",
     "north": "how far to the north it leads",
+    "displacement": "both, two numbers",
     "landmarks": "what is recognised at the place",
     "drop": "markers that are put down",
     "pick": "markers that are taken up",
@@ -32,7 +33,7 @@ COLUMNS = {
     "step": "the number of the row, which is checked",
     "note": "anything, which is passed over",
 }
-BEARINGS = ("exits", "taken", "arrived")
+BEARINGS = ("exits", "taken", "arrived", "displacement")  # lists of numbers
 LISTS = ("landmarks", "drop", "pick", "marker")
 DELIMITERS = ",;\t"
 NO, YES = {"", "no", "false", "0"}, {"yes", "true", "1", "x"}
@@ -94,7 +95,14 @@ def rows_of(file: str, text: str) -> list[Row]:
     for line, cells in _json_lines(file, text) if first == "{" else _table(file, text):
         if len(made) > MOST_STEPS:
             raise InputError(f"{file}:{line}: there are more than {MOST_STEPS:,} steps")
-        made.append(Row(file, line, len(made), cells))
+        row = Row(file, line, len(made), cells)
+        if both := cells.pop("displacement", None):
+            if len(both) != 2 or {"east", "north"} & cells.keys():
+                raise row.fault(
+                    "displacement: two numbers are wanted, east and north, in one column"
+                )
+            cells |= {"east": both[:1], "north": both[1:]}
+        made.append(row)
     if not made:
         raise InputError(f"{file}: there are no rows in it")
     return made
@@ -129,7 +137,7 @@ def _table(file: str, text: str) -> Iterator[tuple[int, dict[str, list[str]]]]:
         yield (
             at,
             {
-                name: _split(name, field, delimiter == ",")
+                name: _split(name, _pointed(name, field, delimiter), delimiter == ",")
                 for name, field in zip(header, fields, strict=False)
                 if field
             },
@@ -149,6 +157,14 @@ def _demand_columns(where: str, names: Iterable[str]) -> None:
         seen.add(name)
     if "exits" not in seen:
         raise InputError(f"{where}: there is no column exits")
+
+
+def _pointed(name: str, text: str, delimiter: str) -> str:
+    """A cell in which numbers have points, where a comma may stand for one: in a table whose
+    columns are not parted by commas."""
+    if delimiter == "," or name not in (*BEARINGS, "length", "east", "north"):
+        return text
+    return re.sub(r"(?<=\d),(?=\d)", ".", text)
 
 
 def _split(name: str, text: str, commas: bool = True) -> list[str]:

@@ -18,6 +18,7 @@ from topomap.runtime.files import MOST_BYTES
 from topomap.runtime.limits import LARGEST
 from topomap.worlds.plan import Point
 
+TOO_DEEP = 0.1  # of the tape by which depths may differ more than it is long, as tapes sag
 MOST_FILES = 1000  # that one survey includes
 DEEPEST = 50  # of files that include each other, and of blocks in blocks
 LONGEST = 400  # characters of the name of a station, with those of its blocks
@@ -46,9 +47,14 @@ SLOPES = {"clino", "backclino"}
 READINGS = {  # of the styles of data that are read
     "normal": {"tape", "compass", "clino", "backtape", "backcompass", "backclino"},
     "cartesian": {"dx", "dy", "dz"},
+    # By the tape along the line, or level, and by depths.
+    "diving": {"tape", "compass", "backtape", "backcompass", "fromdepth", "todepth", "depthchange"},
+    "cylpolar": {
+        *("tape", "compass", "backtape", "backcompass", "fromdepth", "todepth", "depthchange"),
+    },
 }
 STYLES = {"topofil": "normal"}  # older names
-NO_LEGS = {"passage", "ignore"}  # styles whose lines are no legs
+NO_LEGS = {"passage", "ignore", "nosurvey"}  # styles whose lines tell no direction
 USUAL = ("from", "to", "tape", "compass", "clino")
 # Commands that say nothing of which stations are joined, and in which direction.
 IGNORED = {
@@ -396,7 +402,8 @@ class _Reader:
         else:
             self._only(words, len(now.order))
         ends = self._end(told["from"], line), self._end(told["to"], line)
-        made = self._normal(told) if now.style == "normal" else self._by_axes(told)
+        by = {"normal": self._normal, "cartesian": self._by_axes}.get(now.style, self._by_depths)
+        made = by(told)
         east, north, slope, length = made
         if None in ends or "splay" in now.flags:
             self.survey.left["splay legs left out"] += 1
@@ -448,6 +455,8 @@ class _Reader:
         else:
             number = self._number(word) * now.units.get(name, 1.0)
         scale, offset = now.corrected.get(name, (1.0, 0.0))
+        if name in ("compass", "backcompass") and not 0 <= number <= 360:
+            self.survey.left["compass readings below 0 or above 360 degrees"] += 1
         number = number * scale - offset
         if not abs(number) <= LARGEST:
             raise self.fault(f"{name} is more than {LARGEST}")
@@ -488,6 +497,19 @@ class _Reader:
     def _normal(self, told: Mapping[str, _Word]) -> tuple[float, float, float, float]:
         """A leg by tape, compass and clino: east, north, its slope and its length. Where it was
         measured from both ends, the mean is taken."""
+        length = self._tape(told)
+        ahead, back = self._slope(told, "clino"), self._slope(told, "backclino")
+        slopes = [
+            number for number in (ahead, None if back is None else -back) if number is not None
+        ]
+        slope = sum(slopes) / len(slopes) if slopes else 0.0
+        if abs(slope) == 90 or length == 0:
+            return 0.0, 0.0, slope, length
+        flat = length * math.cos(math.radians(slope))
+        return (*self._towards(told, flat), slope, length)
+
+    def _tape(self, told: Mapping[str, _Word]) -> float:
+        """How long a leg is; where it was measured from both ends, the mean."""
         tapes = [self._measured(told, name) for name in ("tape", "backtape")]
         known = [tape for tape in tapes if tape is not None]
         if not known:
@@ -500,13 +522,10 @@ class _Reader:
             length = 0.0
         if length < 0:
             raise self.fault("the tape, as it is corrected, is below 0")
-        ahead, back = self._slope(told, "clino"), self._slope(told, "backclino")
-        slopes = [
-            number for number in (ahead, None if back is None else -back) if number is not None
-        ]
-        slope = sum(slopes) / len(slopes) if slopes else 0.0
-        if abs(slope) == 90 or length == 0:
-            return 0.0, 0.0, slope, length
+        return length
+
+    def _towards(self, told: Mapping[str, _Word], flat: float) -> Point:
+        """How far east and north one comes so far in the direction of the compass."""
         compass, behind = (self._measured(told, name) for name in ("compass", "backcompass"))
         if compass is None and behind is None:
             raise self.fault("no compass, though the leg is not plumbed")
@@ -514,8 +533,38 @@ class _Reader:
             off = 0.0 if compass is None else (behind + 180 - compass + 180) % 360 - 180
             compass = behind + 180 if compass is None else compass + off / 2
         bearing = math.radians((compass or 0.0) + self.now.declination)
-        flat = length * math.cos(math.radians(slope))
-        return flat * math.sin(bearing), flat * math.cos(bearing), slope, length
+        return flat * math.sin(bearing), flat * math.cos(bearing)
+
+    def _by_depths(self, told: Mapping[str, _Word]) -> tuple[float, float, float, float]:
+        """A leg by tape, compass and depths. The tape of a diver runs along the line, that of
+        cylindrical polar data is level."""
+        length = self._tape(told)
+        depths = [self._depth(told, name) for name in ("fromdepth", "todepth", "depthchange")]
+        before, after, change = depths
+        if change is None and before is not None and after is not None:
+            change = after - before
+        down = change or 0.0
+        if self.now.style == "diving":
+            if abs(down) > length > 0 and abs(down) > length * (1 + TOO_DEEP):
+                raise self.fault("the depths differ by more than the tape is long")
+            flat = math.sqrt(max(0.0, length**2 - down**2))
+        else:
+            flat, length = length, math.hypot(length, down)
+        if flat == 0:
+            return 0.0, 0.0, math.copysign(90, -down), length
+        return (*self._towards(told, flat), math.degrees(math.atan2(-down, flat)), length)
+
+    def _depth(self, told: Mapping[str, _Word], name: str) -> float | None:
+        """A depth in metres, or a change of it, corrected; None if it is left out."""
+        word = told.get(name)
+        if word is None or self._omitted(word):
+            return None
+        scale, offset = self.now.corrected.get("depth", (1.0, 0.0))
+        number = self._number(word) * self.now.units.get("depth", 1.0) * scale
+        number -= 0.0 if name == "depthchange" else offset
+        if not abs(number) <= LARGEST:
+            raise self.fault(f"{name} is more than {LARGEST}")
+        return number
 
     def _by_axes(self, told: Mapping[str, _Word]) -> tuple[float, float, float, float]:
         """A leg by how far it leads east, north and up."""
@@ -562,9 +611,9 @@ class _Reader:
             order.append(name)
         wanted = ("dx", "dy") if style == "cartesian" else ()
         missing = [name for name in ("from", "to", *wanted) if name not in order]
-        if style == "normal" and not {"tape", "backtape"} & {*order}:
+        if style != "cartesian" and not {"tape", "backtape"} & {*order}:
             missing.append("tape")
-        if style == "normal" and not {"compass", "backcompass"} & {*order}:
+        if style != "cartesian" and not {"compass", "backcompass"} & {*order}:
             missing.append("compass")
         if missing:
             raise self.fault(f"*data {style} without: {', '.join(missing)}")

@@ -15,15 +15,16 @@ from topomap.worlds.plan import Plan, Reading
 from topomap.worlds.readers.common import with_names
 
 FORMATS = {
-    "graphml": "a street or corridor network in GraphML, as OSMnx writes it",
-    "survex": "a cave survey of Survex (.svx)",
-    "map_server": "a floor plan of map_server of ROS (.yaml, with a PNG or PGM image)",
-    "trizbort": "a Trizbort map",
-    "mapjson": "a map in JSON, as topomap solve --json writes it",
-    "tmap2": "a tmap2 of topological_navigation, in YAML",
-    "nodelink": "a graph in node-link JSON, as networkx writes it",
-    "facts": "facts link(P,S,Q,R), with slots(K)",
+    "graphml": "GraphML",
+    "survex": "Survex",
+    "map_server": "YAML of map_server",
+    "trizbort": "Trizbort",
+    "mapjson": "maps of topomap in JSON",
+    "tmap2": "tmap2",
+    "nodelink": "node-link JSON",
+    "facts": "facts link(P,S,Q,R) with slots(K)",
 }
+IMAGES = b"\x89PNG", b"P1", b"P2", b"P3", b"P4", b"P5", b"P6", b"\xff\xd8\xff", b"GIF8", b"BM"
 
 
 def read(file: str | Path, reading: Reading) -> Plan:
@@ -36,5 +37,9 @@ def read(file: str | Path, reading: Reading) -> Plan:
             if not plan.ways:
                 raise InputError(f"{file}: no ways in it")
             return with_names(plan) if reading.landmarks else plan
-    known = "; ".join(FORMATS.values())
-    raise InputError(f"{file}: it is none of the formats that are known: {known}")
+    if not content.strip():
+        raise InputError(f"{file}: it is empty")
+    if content.startswith(IMAGES):
+        raise InputError(f"{file}: an image; of a floor plan give the YAML file that names it")
+    known = ", ".join(FORMATS.values())
+    raise InputError(f"{file}: it is in none of the formats that are read: {known}")

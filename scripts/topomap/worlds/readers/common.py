@@ -35,6 +35,15 @@ def json_of(content: bytes) -> Any:
         return InputError(" JSON with a number that is too long")
 
 
+def beginning(content: bytes) -> bytes:
+    """The first letters of a file of text, small ones, for what a format is known by. XML may be
+    written in UTF-16."""
+    start = content[:4000]
+    if start[:2] in (b"\xff\xfe", b"\xfe\xff"):
+        start = start.decode("utf-16", "ignore").encode()
+    return start.removeprefix(b"\xef\xbb\xbf").lstrip().lower()
+
+
 def looks_like_json(content: bytes) -> bool:
     """Whether a file begins as JSON does."""
     return content.removeprefix(b"\xef\xbb\xbf").lstrip()[:1] in (b"{", b"[")

@@ -15,7 +15,7 @@ from collections import defaultdict
 from collections.abc import Mapping, Sequence
 from itertools import pairwise
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from defusedxml.common import DefusedXmlException
 from defusedxml.ElementTree import fromstring
@@ -24,18 +24,26 @@ from topomap.model.topology import Place
 from topomap.runtime import nx
 from topomap.runtime.errors import InputError, printable
 from topomap.runtime.limits import LARGEST
-from topomap.worlds.courses import exit_towards, point_along
+from topomap.worlds.courses import SHOWN, exit_towards, point_along, shares
 from topomap.worlds.plan import Plan, Point, Reading, Way
 from topomap.worlds.readers import exact
+from topomap.worlds.readers.common import beginning
 
 Data = Mapping[str, Any]  # what is told of an edge
 DEGREE = 111_195  # metres of a degree of latitude, on a sphere of 6,371 km
+NEAR = 1e-9  # within which two points are one
+FAR = 0.1  # of its length may a course end from its places, until that is told
+# Of the EPSG codes, those of longitude and latitude are most of 4000 to 4999, and newer ones like
+# these; those of three axes, in metres from the middle of the Earth, are not.
+GEOGRAPHIC = {6318, 6668, 6706, 7844}
+PLANES = {"plane", "local", "cartesian", "none", "null"}
+GEOCENTRIC = {4328, 4936, 4978}
 NO, YES = {"false", "0", "no"}, {"true", "1", "yes"}  # what is written of one-way edges
 
 
 def fits(name: str, content: bytes) -> bool:
     """Whether a file is GraphML."""
-    begins = content[:4000].lstrip(b"\xef\xbb\xbf \t\r\n").lower()
+    begins = beginning(content)
     return begins[:1] == b"<" and b"graphml" in begins
 
 
@@ -66,12 +74,14 @@ def read_graphml(file: str | Path, content: bytes, node_type: type = str) -> "nx
 
 def plan_of(file: str, graph: "nx.Graph[Any]", reading: Reading) -> Plan:
     """The plan of a graph whose nodes have coordinates. Raises InputError on bad input."""
-    edges = _edges(graph)
+    edges = _edges(file, graph)
     loops = [edge for edge in edges if edge[0] == edge[1]]
     if not reading.loops:
         edges = [edge for edge in edges if edge[0] != edge[1]]
-    used = [place for place in graph if place in {end for edge in edges for end in edge[:2]}]
+    ended = {end for edge in edges for end in edge[:2]}
+    used = [place for place in graph if place in ended]
     lone = len(graph) - len(used)
+    guessed = ""
     told = [
         f"{file}: {what}: {number}"
         for what, number in (
@@ -82,16 +92,26 @@ def plan_of(file: str, graph: "nx.Graph[Any]", reading: Reading) -> Plan:
     ]
     points = {place: _point(file, graph, place) for place in used}
     degrees = _degrees(graph, points) if reading.degrees is None else reading.degrees
+    if degrees is None:
+        degrees = False
+        crs = printable(str(graph.graph["crs"]))[:60]
+        told.append(f"{file}: crs {crs} is not known, and taken to be of a plane (--degrees)")
+    if degrees and not all(abs(lon) <= 540 and abs(lat) <= 90 for lon, lat in points.values()):
+        raise InputError(f"{file}: its coordinates are no longitude and latitude (--plane)")
     if "crs" not in graph.graph and reading.degrees is None:
         units = "degrees" if degrees else "plane"
         flag = "--plane" if degrees else "--degrees"
-        guess = f"{file}: no crs in it; coordinates taken to be: {units}"
-        told.append(f"{guess} ({flag} says otherwise)")
+        guessed = f"no crs in it; coordinates taken to be: {units}; {flag} says otherwise"
+        told.append(f"{file}: {guessed}")
     flat = _in_degrees if degrees else _in_plane
     places = {place: flat(point, points[used[0]]) for place, point in points.items()}
     ways = []
-    for one, other, data, one_way in edges:
-        course = _course(file, (one, other), (points[one], points[other]), data)
+    elsewhere = []
+    share = shares(edge[:2] for edge in edges)
+    for one, other, told_course, one_way in edges:
+        course, gap = _placed(told_course, (points[one], points[other]))
+        if gap > FAR * _long(course):
+            elsewhere.append(f"{printable(str(one))} to {printable(str(other))}")
         if one == other and len({*course}) < 3:
             raise InputError(
                 f"{file}: the way from place {printable(str(one))} back to itself has no course, "
@@ -103,11 +123,20 @@ def plan_of(file: str, graph: "nx.Graph[Any]", reading: Reading) -> Plan:
             if all(math.dist(point, here[0]) == 0 for point in here):
                 names = f"{printable(str(one))} and {printable(str(other))}"
                 raise InputError(f"{file}: places {names} are at one point")
-            ends.append(exit_towards(place, here[0], point_along(here, reading.along)))
+            there = point_along(here, reading.along, share(one, other))
+            if math.dist(here[0], there) < NEAR:
+                names = f"{printable(str(one))} to {printable(str(other))}"
+                said = f"is at {printable(str(place))} again where its direction is taken (--along)"
+                raise InputError(f"{file}: the way from place {names} {said}")
+            ends.append(exit_towards(place, here[0], there))
         where = [flat(point, points[used[0]]) for point in course]
         move = where[-1][0] - where[0][0], where[-1][1] - where[0][1]
         long = sum(math.dist(*pair) for pair in pairwise(here))
         ways.append(Way((ends[0], ends[1]), move, long, one_way))
+    if elsewhere:
+        more = f" and {len(elsewhere) - SHOWN} more" if len(elsewhere) > SHOWN else ""
+        listed = ", ".join(elsewhere[:SHOWN]) + more
+        told.append(f"{file}: ways whose course does not end at their places: {listed}")
     scale = "longitude and latitude" if degrees else "plane"
     return Plan(
         Path(file).stem,
@@ -115,59 +144,70 @@ def plan_of(file: str, graph: "nx.Graph[Any]", reading: Reading) -> Plan:
         places,
         notes=(f"coordinates: {scale}", *_provenance(graph)),
         told=tuple(told),
+        guessed=guessed,
     )
 
 
-def _edges(graph: "nx.Graph[Any]") -> list[tuple[Place, Place, Data, bool]]:
-    """The ways in order of their places: their ends, what is told of them, and whether they can be
-    gone only from the first end to the second."""
-    made: list[tuple[Place, Place, Data, bool]] = []
-    between: dict[tuple[Place, Place], list[Data]] = defaultdict(list)
+class _Edge(NamedTuple):
+    """What is told of an edge: its course, if it has one, and its attribute ``oneway``."""
+
+    course: tuple[Point, ...] | None
+    oneway: str
+
+    @property
+    def key(self) -> tuple[Point, ...]:
+        """The same for two edges of one course, from whichever end it is written."""
+        return min(self.course, self.course[::-1]) if self.course else ()
+
+
+def _edges(
+    file: str, graph: "nx.Graph[Any]"
+) -> list[tuple[Place, Place, tuple[Point, ...] | None, bool]]:
+    """The ways in order of their places: their ends, their course, if it is told, and whether they
+    can be gone only from the first end to the second. Raises InputError."""
+    made: list[tuple[Place, Place, _Edge, bool]] = []
+    between: dict[tuple[Place, Place], list[_Edge]] = defaultdict(list)
     data: Data
     for one, other, data in graph.edges(data=True):
-        between[one, other].append(data)
+        edge = _Edge(_course(file, one, other, data), str(data.get("oneway", "")).lower())
+        between[one, other].append(edge)
     if not graph.is_directed():
         for (one, other), several in between.items():
-            for data in several:
-                one_way = str(data.get("oneway", "")).lower() in YES
+            for edge in several:
+                one_way = edge.oneway in YES
                 ends = (one, other) if one_way else (min(one, other), max(one, other))
-                made.append((*ends, data, one_way))
+                made.append((*ends, edge, one_way))
     else:
+        # Two opposite edges of one course are one way; a loop that can be gone both ways is there
+        # twice.
         for one, other in sorted({(min(pair), max(pair)) for pair in between}):
-            back = [] if one == other else [*between[other, one]]
-            for data in between[one, other]:
-                opposite = _opposite(data, between[one, other] if one == other else back)
-                if one == other:
-                    # A loop stands twice if it can be gone both ways.
-                    if opposite is not None and _key(opposite) < _key(data):
-                        continue
-                elif opposite is not None:
-                    back.remove(opposite)
-                made.append((one, other, data, opposite is None and _one_way(data)))
-            made += [(other, one, data, _one_way(data)) for data in back]
-    return sorted(made, key=lambda edge: (edge[:2], _key(edge[2]), edge[3]))
+            back: dict[tuple[Point, ...], list[_Edge]] = defaultdict(list)
+            for edge in between[other, one] if one != other else ():
+                back[edge.key].append(edge)
+            for edge in between[one, other]:
+                if back[edge.key]:
+                    back[edge.key].pop()
+                    made.append((one, other, edge, False))
+                elif one == other:
+                    back[edge.key].append(edge)
+                else:
+                    made.append((one, other, edge, edge.oneway not in NO))
+            made += [
+                (other, one, edge, edge.oneway not in NO) for left in back.values() for edge in left
+            ]
+    made.sort(key=lambda way: (*way[:2], way[2].key, way[3]))
+    return [(one, other, edge.course, one_way) for one, other, edge, one_way in made]
 
 
-def _one_way(data: Data) -> bool:
-    """Whether a directed edge without an opposite one can be gone one way only."""
-    return str(data.get("oneway", "")).lower() not in NO
-
-
-def _key(data: Data) -> str:
-    return str(data.get("geometry", ""))
-
-
-def _opposite(data: Data, others: Sequence[Data]) -> Data | None:
-    """The edge of the same course in the other direction, if there is one."""
-    course = _points(_key(data))
-    for other in others:
-        back = _points(_key(other))
-        same = course is None and back is None
-        if course is not None and back is not None:
-            same = course == back[::-1]
-        if same and other is not data:
-            return other
-    return None
+def _course(file: str, one: Place, other: Place, data: Data) -> tuple[Point, ...] | None:
+    """The course of an edge as it is told; None if it is not. Raises InputError."""
+    try:
+        points = _points(str(data.get("geometry", "")))
+    except (ValueError, TypeError, KeyError, IndexError, RecursionError, OverflowError):
+        names = f"{printable(str(one))} to {printable(str(other))}"
+        said = "its geometry is no LINESTRING (x y, ...), and no list of points"
+        raise InputError(f"{file}: the way from place {names}: {said}") from None
+    return None if points is None else tuple(points)
 
 
 def _points(text: str) -> list[Point] | None:
@@ -185,24 +225,19 @@ def _points(text: str) -> list[Point] | None:
     return points
 
 
-def _course(
-    file: str,
-    ends: tuple[Place, Place],
-    points: tuple[Point, Point],
-    data: Data,
-) -> list[Point]:
-    """The points of a way from its first end to its second."""
-    try:
-        course = _points(_key(data))
-    except (ValueError, TypeError, KeyError, IndexError, RecursionError, OverflowError):
-        names = f"{printable(str(ends[0]))} to {printable(str(ends[1]))}"
-        said = "its geometry is no LINESTRING (x y, ...), and no list of points"
-        raise InputError(f"{file}: the way from place {names}: {said}") from None
-    if course is None:
-        return [*points]
-    apart = math.dist(course[0], points[0]) + math.dist(course[-1], points[1])
-    turned = math.dist(course[-1], points[0]) + math.dist(course[0], points[1])
-    return course[::-1] if turned < apart else course
+def _placed(
+    told: tuple[Point, ...] | None, points: tuple[Point, Point]
+) -> tuple[list[Point], float]:
+    """The points of a way from its first end to its second, and how far it ends from them."""
+    if told is None:
+        return [*points], 0.0
+    apart = math.dist(told[0], points[0]) + math.dist(told[-1], points[1])
+    turned = math.dist(told[-1], points[0]) + math.dist(told[0], points[1])
+    return [*(told[::-1] if turned < apart else told)], min(apart, turned)
+
+
+def _long(course: Sequence[Point]) -> float:
+    return sum(math.dist(*pair) for pair in pairwise(course))
 
 
 def _in_plane(point: Point, origin: Point) -> Point:
@@ -231,13 +266,30 @@ def _point(file: str, graph: "nx.Graph[Any]", place: Place) -> Point:
     raise InputError(f"{file}: place {name} has no coordinates (numbers x, y or lon, lat)")
 
 
-def _degrees(graph: "nx.Graph[Any]", points: Mapping[Place, Point]) -> bool:
+def _degrees(graph: "nx.Graph[Any]", points: Mapping[Place, Point]) -> bool | None:
     """Whether the coordinates are degrees of longitude and latitude, as the coordinate reference
-    system says. Without one they are taken to be of a plane, as those of a robot are, unless they
-    stand under the names lon and lat."""
-    if crs := str(graph.graph.get("crs", "")).lower():
-        return bool(re.search(r"4326|4258|4269|crs84|longlat|latlong", crs))
-    return not any("x" in graph.nodes[place] for place in points)
+    system says; None if it is not known. Without one they are taken to be of a plane, as those of a
+    robot are, unless they stand under the names lon and lat."""
+    crs = str(graph.graph.get("crs", "")).strip().lower()
+    if not crs:
+        return not any("x" in graph.nodes[place] for place in points)
+    if crs in PLANES:
+        return False
+    if re.match(r"(bound|compound)?(crs|cs)?\W*(proj(ected)?c(r?)s|local_?cs|engcrs)", crs):
+        return False
+    if re.match(r"(geog|geod|geographic|geodetic)(c(r?)s)\b", crs):
+        return True
+    if proj := re.search(r"\+proj=(\w+)", crs):
+        return proj[1] in ("longlat", "latlong", "lonlat", "latlon")
+    if re.search(r"crs:?84\b", crs):
+        return True
+    if code := re.fullmatch(r".*\bepsg\W+(?:[\d.]*\W+)?(\d+)\W*", crs):
+        number = int(code[1])
+        if number in GEOGRAPHIC or (4000 <= number < 5000 and number not in GEOCENTRIC):
+            return True
+        if not all(abs(x) <= 180 and abs(y) <= 90 for x, y in points.values()):
+            return False
+    return None
 
 
 def _provenance(graph: "nx.Graph[Any]") -> tuple[str, ...]:

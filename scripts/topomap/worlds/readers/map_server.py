@@ -15,13 +15,14 @@ from typing import TYPE_CHECKING, Any
 from topomap.runtime.errors import InputError, of_file, printable
 from topomap.runtime.extras import need
 from topomap.runtime.limits import LARGEST, MOST_PLACES
-from topomap.worlds.courses import exit_towards, point_along
+from topomap.worlds.courses import exit_towards, point_along, shares
 from topomap.worlds.plan import Plan, Point, Reading, Way
 
 if TYPE_CHECKING:
     from topomap.worlds.skeletons import Grid, Net
 
 MOST_PIXELS = 40_000_000
+UNKNOWN = 205  # as map_saver writes unknown space
 MOST_YAML = 2**16  # bytes
 MODES = "trinary", "scale", "raw"
 REQUIRED = "image", "resolution", "origin", "negate", "occupied_thresh", "free_thresh"
@@ -30,10 +31,11 @@ REQUIRED = "image", "resolution", "origin", "negate", "occupied_thresh", "free_t
 def fits(name: str, content: bytes) -> bool:
     """Whether a file is the YAML file of a map."""
     start = content[: 2 * MOST_YAML]
-    return start.lstrip()[:1] != b"<" and all(
-        re.search(rb"(?m)(^|[{,])[ \t]*[\"']?%s[\"']?[ \t]*:" % key, start)
-        for key in (b"image", b"resolution")
+    image, *others = (
+        re.search(rb"(?m)(^|[{,])[ \t]*[\"']?%s[\"']?[ \t]*:" % key.encode(), start)
+        for key in REQUIRED
     )
+    return start.lstrip()[:1] != b"<" and bool(image) and any(others)
 
 
 def read(file: str, content: bytes, reading: Reading) -> Plan:
@@ -61,7 +63,13 @@ def read(file: str, content: bytes, reading: Reading) -> Plan:
     if mode not in MODES:
         raise InputError(f"{file}: mode: it must be one of: {', '.join(MODES)}")
     image = printable(str(told["image"]))[:200]
-    grid, rows = _free_space(file, str(told["image"]), negate, free, mode)
+    path, warned = _beside(file, str(told["image"]))
+    grid, rows, unknown = _free_space(file, path, image, negate, free, mode)
+    if unknown:
+        warned.append(
+            f"{file}: free_thresh {free:g} takes the grey value {UNKNOWN} for free, with which "
+            f"map_saver writes what is unknown: {unknown} pixels (free_thresh 0.196 does not)"
+        )
     if max(*grid.shape, rows) * resolution > LARGEST:
         raise InputError(f"{file}: resolution: the map is wider than {LARGEST} metres")
     radius = None if reading.radius is None else reading.radius / resolution
@@ -86,13 +94,14 @@ def read(file: str, content: bytes, reading: Reading) -> Plan:
     number = {place: row for row, place in enumerate(order, 1)}
     points = {number[place]: flat(point) for place, point in net.where.items()}
     ways = []
+    share = shares((one, other) for one, other, _ in net.lines.values())
     for one, other, line in net.lines.values():
         course = _course(net, one, other, line, flat)
         ends = [
             exit_towards(
                 number[place],
                 points[number[place]],
-                point_along(way, reading.along + resolution * net.reach[place]),
+                point_along(way, reading.along + resolution * net.reach[place], share(one, other)),
             )
             for place, way in ((one, course), (other, course[::-1]))
         ]
@@ -104,7 +113,7 @@ def read(file: str, content: bytes, reading: Reading) -> Plan:
         tuple(ways),
         dict(sorted(points.items())),
         notes=(f"resolution: {resolution:g} metres a pixel",),
-        told=tuple(_changed(file, net)),
+        told=(*warned, *_changed(file, net)),
     )
 
 
@@ -149,14 +158,16 @@ def _number(file: str, told: Mapping[str, Any], key: str) -> float:
     return number
 
 
-def _free_space(file: str, image: str, negate: bool, free: float, mode: str) -> "tuple[Grid, int]":
-    """Where the image beside a file is free, and how many rows it has. The size is looked at before
-    memory is taken for the pixels. What is transparent is unknown, so not free."""
+def _free_space(
+    file: str, path: Path, image: str, negate: bool, free: float, mode: str
+) -> "tuple[Grid, int, int]":
+    """Where the image beside a file is free, how many rows it has, and how many of the free pixels
+    have the grey value that stands for unknown space, if there are brighter ones. The size is
+    looked at before memory is taken for the pixels. What is transparent is unknown, so not free."""
     import numpy as np
     from PIL import Image
 
-    path = _beside(file, image)
-    name = f"{file}: the image {printable(image)[:200]}"
+    name = f"{file}: the image {image}"
     large = f"{name} has more than {MOST_PIXELS:,} pixels"
     try:
         with warnings.catch_warnings():
@@ -184,7 +195,11 @@ def _free_space(file: str, image: str, negate: bool, free: float, mode: str) -> 
         taken = grey / 100
     else:
         taken = (255 - grey) / 255
-    return known & (taken < free), int(grey.shape[0])
+    open_ = known & (taken < free)
+    unknown = 0
+    if mode != "raw" and not negate and bool((open_ & (grey > UNKNOWN)).any()):
+        unknown = int((open_ & (grey == UNKNOWN)).sum())
+    return open_, int(grey.shape[0]), unknown
 
 
 def _grey(picture: Any) -> Any:
@@ -202,14 +217,19 @@ def _grey(picture: Any) -> Any:
     return colours[..., :3].mean(axis=2, dtype=np.float32), colours[..., 3] == 255
 
 
-def _beside(file: str, image: str) -> Path:
-    """The path of an image in the folder of a file, or below."""
+def _beside(file: str, image: str) -> tuple[Path, list[str]]:
+    """The path of an image in the folder of a file, or below; and what there is to warn of. Of the
+    whole path of an image on another machine the name is enough."""
     if file == "-":
         raise InputError(f"{file}: its image is in its folder, so it must be given by its name")
     said = f"{file}: image: {printable(image)[:200]}"
+    warned = []
     try:
         folder = Path(file).parent.resolve()
         path = (folder / image).resolve()
+        if Path(image).is_absolute() and not path.is_relative_to(folder):
+            path = (folder / Path(image).name).resolve()
+            warned.append(f"{said}: taken to be the file of this name beside it")
         inside = path.is_relative_to(folder)
         regular = path.is_file()
     except (OSError, ValueError, RuntimeError):
@@ -218,7 +238,7 @@ def _beside(file: str, image: str) -> Path:
         raise InputError(f"{said} is outside of the folder of this file")
     if not regular:
         raise InputError(f"{said} is not there, or is no file")
-    return path
+    return path, warned
 
 
 def _course(net: "Net", one: int, other: int, line: Any, flat: Any) -> list[Point]:

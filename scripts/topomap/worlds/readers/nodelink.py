@@ -119,6 +119,13 @@ def _name(file: str, what: str, told: object) -> str:
     return name_of(file, what, told)
 
 
+def _id(end: object) -> object:
+    """What an edge names as its end. D3 puts the node itself there, once it has drawn a graph."""
+    if isinstance(end, dict):
+        return end.get("id", end.get("index"))
+    return end
+
+
 class _Ends:
     """The ends of edges: by the names of nodes, or if one is no such name, by their numbers."""
 
@@ -135,7 +142,8 @@ class _Ends:
             keys = next((keys for keys in ENDS if {*keys} <= edge.keys()), None)
             if keys is None:
                 raise InputError(f"{file}: edge {number}, from 0: it has no source and target")
-            self.told.append((edge[keys[0]], edge[keys[1]]))
+            one, other = (edge[key] for key in keys)
+            self.told.append((_id(one), _id(other)))
         known = {*names}
         self.by_name = all(
             _name(file, f"edge {number}, from 0", end) in known

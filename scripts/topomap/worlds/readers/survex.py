@@ -15,7 +15,7 @@ from pathlib import Path
 
 from topomap.runtime.errors import InputError, printable
 from topomap.runtime.limits import LARGEST, MOST_PLACES
-from topomap.worlds.courses import exit_towards, point_along
+from topomap.worlds.courses import exit_towards, point_along, shares
 from topomap.worlds.plan import Exit, Plan, Point, Reading, Way
 from topomap.worlds.surveys import Leg, Survey, survey_of
 
@@ -39,7 +39,9 @@ def read(file: str, content: bytes, reading: Reading) -> Plan:
     survey = survey_of(file, content)
     net = _Net(file, survey)
     ways, upright, loops, rings = [], [], 0, 0
-    for chain in net.chains():
+    chains = [*net.chains()]
+    share = shares(chain.ends for chain in chains)
+    for chain in chains:
         dead = [end for end in chain.ends if len(net.at[end]) == 1]
         if dead and chain.upright:
             upright.append(net.names[dead[-1]])
@@ -48,7 +50,7 @@ def read(file: str, content: bytes, reading: Reading) -> Plan:
             loops += 1
             rings += len(net.at[chain.ends[0]]) == 2
             continue
-        ways.append(_way(file, chain, net.names, reading.along))
+        ways.append(_way(file, chain, net.names, reading.along, share(*chain.ends)))
     used = {end.place for way in ways for end in way.ends}
     if len(used) > MOST_PLACES:
         raise InputError(f"{file}: more than {MOST_PLACES} junctions and dead ends")
@@ -232,7 +234,7 @@ def _without_duplicates(legs: list[Leg]) -> tuple[list[Leg], int]:
     return sorted(by_number.values(), key=lambda leg: leg.number), len(legs) - len(by_number)
 
 
-def _way(file: str, chain: _Chain, names: Mapping[int, str], along: float) -> Way:
+def _way(file: str, chain: _Chain, names: Mapping[int, str], along: float, share: float) -> Way:
     """The way of a chain of legs."""
     steps = [(-leg.east, -leg.north) if back else (leg.east, leg.north) for leg, back in chain.legs]
     course = [(0.0, 0.0)]
@@ -244,7 +246,7 @@ def _way(file: str, chain: _Chain, names: Mapping[int, str], along: float) -> Wa
         (chain.ends[0], course, steep),
         (chain.ends[1], course[::-1], steep[::-1]),
     ):
-        ends.append(_exit(file, chain, names, station, line, is_steep, along))
+        ends.append(_exit(file, chain, names, station, line, is_steep, along, share))
     length = sum(leg.length for leg, _ in chain.legs)
     if not all(abs(number) <= LARGEST for number in (*course[-1], length)):
         raise InputError(f"{file}: {_between(chain, names)} is longer than {LARGEST} metres")
@@ -259,6 +261,7 @@ def _exit(
     line: list[Point],
     steep: list[bool],
     along: float,
+    share: float,
 ) -> Exit:
     """The exit by which a way leaves a station: its direction is that of the point so far along it
     as it is seen from above, from its first leg that is not steep."""
@@ -271,7 +274,7 @@ def _exit(
     if chain.ends[0] == chain.ends[1] and len(line) > 2:
         long = sum(math.dist(*pair) for pair in pairwise(line))
         along = min(along, long / 3)
-    there = point_along(line, along)
+    there = point_along(line, along, share)
     if math.dist(there, line[0]) < NEAR:
         raise InputError(
             f"{file}: {_between(chain, names)} is at {printable(names[station])} again "

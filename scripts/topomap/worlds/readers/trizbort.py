@@ -8,7 +8,8 @@ So are lines that go up, down, in or out, as their labels say, and those without
 they have no direction.
 """
 
-from collections.abc import Iterable
+import re
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from xml.etree.ElementTree import Element, ParseError
 
@@ -18,7 +19,7 @@ from defusedxml.ElementTree import fromstring
 from topomap.model.topology import Place
 from topomap.runtime.errors import InputError
 from topomap.worlds.plan import Exit, Plan, Point, Reading, Way
-from topomap.worlds.readers.common import demand_few, name_of, number_of, numbered, shown
+from topomap.worlds.readers.common import beginning, demand_few, name_of, number_of, numbered, shown
 
 PORTS = [
     "n",
@@ -38,14 +39,14 @@ PORTS = [
     "nw",
     "nnw",
 ]  # clockwise
-NO_DIRECTION = {"up", "down", "in", "out", "u", "d"}  # what labels say
+NO_DIRECTION = re.compile(r"(in|out|u|d)|.*\b(up|down)\b.*", re.DOTALL)  # what labels say
 NAMED = 10  # lines that a warning names
 
 
 def fits(name: str, content: bytes) -> bool:
     """Whether a file is a map of Trizbort."""
-    begin = content[:4000].lower()
-    return begin.removeprefix(b"\xef\xbb\xbf").lstrip()[:1] == b"<" and b"<trizbort" in begin
+    begin = beginning(content)
+    return begin[:1] == b"<" and b"<trizbort" in begin
 
 
 def read(file: str, content: bytes, reading: Reading) -> Plan:
@@ -80,7 +81,7 @@ def read(file: str, content: bytes, reading: Reading) -> Plan:
         titled = " to ".join(shown(titles[name] or name) for name in ids)
         labels = {line.get(key, "").strip().lower() for key in ("startText", "endText")}
         ports = [end.get("port", "").strip().lower() for end in ends]
-        if labels & NO_DIRECTION or not all(ports):
+        if any(map(NO_DIRECTION.fullmatch, labels)) or not all(ports):
             without.append(titled)
         elif ids[0] == ids[1] and not reading.loops:
             loops.append(titled)
@@ -89,6 +90,7 @@ def read(file: str, content: bytes, reading: Reading) -> Plan:
             (x, y), (to_x, to_y) = points[one.place], points[other.place]
             one_way = line.get("flow", "").lower() == "oneway"
             ways.append(Way((one, other), (to_x - x, to_y - y), None, one_way))
+    ways, again = _once(ways)
     used = {end.place for way in ways for end in way.ends}
     lone = [name for name in rooms if places[name] not in used]
     told = [
@@ -97,11 +99,13 @@ def read(file: str, content: bytes, reading: Reading) -> Plan:
             ("lines that lead nowhere", dangling, ""),
             ("lines up, down, in, out or without a port", without, _named(without)),
             ("loops", loops, _named(loops)),
+            ("second lines between the same two ports", again, ""),
             ("rooms without a way", lone, _named(titles[name] or name for name in lone)),
         )
         if lines
     ]
-    _demand_apart(file, ways)
+    called = {places[name]: title or name for name, title in titles.items()}
+    _demand_apart(file, ways, called)
     return Plan(
         Path(file).stem,
         tuple(ways),
@@ -161,16 +165,33 @@ def _centre(file: str, name: str, room: Element) -> Point:
     return x + w / 2, -(y + h / 2)
 
 
-def _demand_apart(file: str, ways: Iterable[Way]) -> None:
+def _once(ways: Iterable[Way]) -> tuple[list[Way], list[Way]]:
+    """The ways, lines between the same two ports taken as one, which can be gone both ways if one
+    of them can, or two of them lead in opposite directions; and the lines that are left out."""
+    known: dict[tuple[Exit, ...], Way] = {}
+    again = []
+    for way in ways:
+        key = tuple(sorted(way.ends))
+        if key not in known:
+            known[key] = way
+            continue
+        again.append(way)
+        one_way = known[key].one_way and way.one_way and known[key].ends == way.ends
+        both = way if not way.one_way else known[key]
+        known[key] = both._replace(one_way=one_way)
+    return [*known.values()], again
+
+
+def _demand_apart(file: str, ways: Iterable[Way], called: Mapping[Place, str]) -> None:
     """Raises InputError if two lines end at one port of a room."""
     taken: dict[Exit, Place] = {}
     for way in ways:
         for end, other in (way.ends, way.ends[::-1]):
             if end in taken:
                 port = PORTS[round(end.bearing * len(PORTS) / 360)]
-                leads = f"to rooms {shown(taken[end])} and {shown(other.place)}"
+                room, one, two = (shown(called[p]) for p in (end.place, taken[end], other.place))
                 raise InputError(
-                    f"{file}: room {shown(end.place)}: two lines end at its port {port}, {leads}"
+                    f"{file}: room {room}: two lines end at its port {port}, to {one} and {two}"
                 )
             taken[end] = other.place
 
