@@ -411,8 +411,25 @@ def test_looks_and_starts(read):
     )
 
 
+def test_displacements_and_decimal_commas(read):
+    """A displacement may stand in one column; and where columns are not parted by commas, numbers
+    may have them."""
+    rows = '{"exits": ["N"], "taken": "N", "displacement": [0.5, 12]}\n{"exits": ["S"]}\n'
+    table = "exits;taken;east;north\nN;N;0,5;12\nS;;;\n"
+    plain = "exits,taken,east,north\nN,N,0.5,12\nS,,,\n"
+    one, two, three = (read(text, straight_ways=10).experience for text in (rows, table, plain))
+    assert one == two == three
+    assert one.shifts
+    bent = "exits;taken\n0,5 90,5;90,5\n0,5;\n"
+    assert read(bent).experience == read(bent.replace(",", ".").replace(";", ",")).experience
+
+
 GOOD = "exits,taken\n0 90,90\n0,\n"
 HOSTILE = [
+    (
+        "exits,taken,displacement\nN,N,1\nS,,\n",
+        ":2: step 0: displacement: two numbers are wanted, east and north",
+    ),
     ("", "walk.txt: there are no rows in it"),
     ("exits,taken\n", "walk.txt: there are no rows in it"),
     ("exits,taken\n0 90,45\n0,\n", ":2: step 0: exit '45' is taken, but the exits seen are 0, 90"),

@@ -209,6 +209,29 @@ def test_duplicates_that_alone_join_a_passage_are_kept(tmp_path):
     assert not made.told
 
 
+def test_depths_and_legs_that_nobody_measured(tmp_path):
+    """A diver's tape runs along the line, that of cylindrical polar data is level; a leg without a
+    survey is left out, and a reading that cannot be is counted."""
+    diving = "*data diving from to tape compass fromdepth todepth\n1 2 50 90 0 30\n"
+    (way,) = plan(tmp_path / "a.svx", diving).ways
+    assert (way.length, way.move) == (50, (pytest.approx(40), pytest.approx(0)))
+    change = "*data diving from to compass tape depthchange\n1 2 180 50 -40\n"
+    (way,) = plan(tmp_path / "a.svx", change).ways
+    assert way.move == (pytest.approx(0), pytest.approx(-30))
+    level = "*units depth feet\n*data cylpolar from to tape compass depthchange\n1 2 30 0 100\n"
+    (way,) = plan(tmp_path / "a.svx", level).ways
+    assert way.move == (pytest.approx(0), pytest.approx(30))
+    assert way.length == pytest.approx(math.hypot(30, 30.48))
+    plumbed = plan(tmp_path / "a.svx", f"{diving}2 3 9 0 30 39\n3 4 9 0 39 39\n")
+    assert [way.length for way in plumbed.ways] == [68]
+    made = plan(tmp_path / "a.svx", "1 2 10 400 0\n*data nosurvey from to\n2 3\n3 4\n")
+    assert [way.ends[0].bearing for way in made.ways] == [pytest.approx(40)]
+    assert [line.partition(": ")[2] for line in made.told] == [
+        "compass readings below 0 or above 360 degrees: 1",
+        "lines of *data nosurvey left out: 2",
+    ]
+
+
 @pytest.mark.parametrize(
     ("text", "line", "fault"),
     [
@@ -532,6 +555,26 @@ def test_maps_refused(tmp_path, told, fault):
         plan(file)
     assert str(error.value).startswith(f"{file}:")
     assert "\n" not in str(error.value)
+
+
+def test_what_map_saver_writes_for_unknown_space_is_told(tmp_path):
+    """By its usual free_thresh, 0.25, it counts as free; nothing is told where that is not so."""
+    free, _ = corridors(9, noise=0)
+    steps = [(row, column) for row in range(-3, 4) for column in range(-3, 4)]
+    walls = np.any([np.roll(free, step, (0, 1)) for step in steps], axis=0)
+    grey = np.where(free, 254, np.where(walls, 0, 205)).astype(np.uint8)
+    Image.fromarray(grey).save(tmp_path / "floor.png")
+    for thresh, told in (0.25, True), (0.196, False):
+        made = plan(yaml_file(tmp_path, image="floor.png", free_thresh=thresh))
+        assert any("the grey value 205 for free" in one for one in made.told) == told
+    assert len(made.points) == 9
+
+
+def test_an_image_named_by_its_path_on_another_machine(tmp_path):
+    map_file(tmp_path, corridors(5, noise=0)[0])
+    made = plan(yaml_file(tmp_path, image="/home/robot/maps/floor.pgm"))
+    assert "taken to be the file of this name beside it" in made.told[0]
+    assert len(made.points) == 9
 
 
 @pytest.mark.parametrize("side", [7000, 10**5, 2**31 - 1])

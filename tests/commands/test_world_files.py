@@ -442,6 +442,66 @@ def line(one="e", other="w", more=""):
     )
 
 
+def test_trizbort_lines_between_the_same_ports_are_one(tmp_path):
+    """Two that lead in opposite directions make a way that can be gone both ways."""
+    back = '<line id="4" flow="oneWay"><dock index="0" id="2" port="w"/>'
+    back += '<dock index="1" id="1" port="e"/></line>'
+    file = tmp_path / "two.trizbort"
+    one_way = line(more='flow="oneWay"')
+    for lines, refused in ((one_way + back, False), (one_way + one_way, True)):
+        file.write_text(trizbort(lines))
+        (way,) = load(file, two_way=True).plan.ways
+        assert way.one_way == refused
+        assert (
+            f"{file}: second lines between the same two ports left out: 1"
+            in load(file, two_way=True).warnings
+        )
+
+
+def test_trizbort_labels_that_lead_up_or_down_are_no_directions(tmp_path):
+    file = tmp_path / "up.trizbort"
+    for text, left in ("Go UP", 1), ("climb down the rope", 1), ("u", 1), ("upper hall", 0):
+        more = f'startText="{text}"'
+        file.write_text(trizbort(line() + line("n", "s", more)))
+        assert len(load(file).plan.ways) == 2 - left
+
+
+@pytest.mark.parametrize(
+    ("content", "said"),
+    [
+        (b"  \n", "it is empty"),
+        (b"\x89PNG\r\n", "of a floor plan give the YAML file that names it"),
+        (b"P5 2 2 255\n", "of a floor plan give the YAML file that names it"),
+        (b"image: a.pgm\nfree_thresh: 0.2\n", "resolution is not given"),
+    ],
+)
+def test_what_is_no_world_is_told(tmp_path, content, said):
+    (tmp_path / "x").write_bytes(content)
+    with pytest.raises(InputError, match=said):
+        load(tmp_path / "x")
+
+
+def test_slots_of_a_file_are_kept_if_only_north_is_told():
+    file = FILES / "museum.world"
+    assert load(file, north=0).environment.map.links == load(file).environment.map.links
+    assert load(file, north=45).environment.map.slots == 8
+
+
+def test_nodes_themselves_as_the_ends_of_edges(tmp_path):
+    """D3 puts them there once it has drawn a graph."""
+    nodes = [{"id": "a", "x": 0, "y": 0, "index": 0}, {"id": "b", "x": 0, "y": 9, "index": 1}]
+    (tmp_path / "d3.json").write_text(
+        json.dumps({"nodes": nodes, "links": [{"source": nodes[0], "target": nodes[1]}]})
+    )
+    assert load(tmp_path / "d3.json").environment.map.links[("a", 0)] == ("b", 2)
+
+
+def test_xml_in_utf_16(tmp_path):
+    text = trizbort(line()).replace('version="1.0"', 'version="1.0" encoding="utf-16"')
+    (tmp_path / "wide.trizbort").write_text(text, encoding="utf-16")
+    assert len(load(tmp_path / "wide.trizbort").plan.ways) == 1
+
+
 ENTITIES = '<!DOCTYPE x [<!ENTITY a "b"><!ENTITY c "&a;&a;&a;">]>'
 HOSTILE_XML = {
     trizbort(line()).replace("<trizbort>", f"{ENTITIES}<trizbort>"): "document type or entities",

@@ -12,6 +12,7 @@ import pytest
 from conftest import run
 from scipy.spatial import Delaunay
 from test_draw import check, clockwise, some_map
+from topomap.api.scenes import drawn_like
 from topomap.drawing import panel
 from topomap.drawing.clearance import CLEAR, under
 from topomap.drawing.layout import ELSEWHERE, layout, straight
@@ -21,10 +22,12 @@ from topomap.drawing.plain import UNDER
 from topomap.drawing.scenes import Scene
 from topomap.drawing.where import measured
 from topomap.model.experience import Experience
+from topomap.model.topology import label
 from topomap.runtime.errors import InputError
 from topomap.worlds.environment import Environment, by_bearing, flat_bearing, grid, moves_of
 from topomap.worlds.files import load
 from topomap.worlds.instance import instance
+from topomap.worlds.plan import Reading
 from topomap.worlds.senses import Senses
 from topomap.worlds.tours import tour
 
@@ -278,6 +281,38 @@ def test_several_ways_are_said():
     found = likeness(made.map, made.map, plan)
     assert "in several ways" in found.note
     assert found.where is not None
+
+
+def test_of_several_ways_the_one_that_was_measured_is_taken():
+    """A block looks the same from opposite corners, but not by the compass."""
+    environment, at = squares(2, 3)
+    plan = type("Plan", (), {"points": at, "landmarks": {}, "names": {}})
+    for senses in COMPASS, SHIFTS:
+        for start in [*environment.map.stars]:
+            made = instance(environment, "tour", start=label(start), senses=senses)
+            world = made.experience.map_of(made.truth)
+            scene = Scene(world, made.truth, "block", seen=made.experience)
+            found = likeness(world, environment.map, plan, scene.where())
+            assert found.note == ""
+            assert found.where[0] == at[start]
+
+
+def test_a_world_with_loops_is_known_again(tmp_path):
+    """However it was read for the exploration."""
+    graph = nx.MultiGraph(crs="plane")
+    for name, (x, y) in {"a": (0, 0), "b": (100, 0), "c": (100, 90)}.items():
+        graph.add_node(name, x=float(x), y=float(y))
+    graph.add_edges_from([("a", "b"), ("b", "c")])
+    graph.add_edge("a", "a", geometry="LINESTRING (0 0, -40 0, -40 -40, 0 -40, 0 0)")
+    nx.write_graphml(graph, tmp_path / "net.graphml")
+    for loops in (False, True):
+        environment = load(tmp_path / "net.graphml", Reading(loops=loops)).environment
+        made = instance(environment, "tour")
+        world = made.experience.map_of(made.truth)
+        scene = Scene(world, made.truth, "loops", seen=made.experience)
+        drawn, said = drawn_like(scene, str(tmp_path / "net.graphml"))
+        assert {*drawn.like.values()} == {(0, 0), (100, 0), (100, 90)}
+        assert "no part" not in said
 
 
 @pytest.mark.parametrize("command", ["draw", "show", "export"])

@@ -21,6 +21,7 @@ from pathlib import Path
 
 import networkx as nx
 import pytest
+from conftest import ROOT
 from oracles.worlds import random_experience
 from topomap import cli
 from topomap.documents.answers import Report
@@ -98,6 +99,8 @@ def on_values(draw, text):
 
 def made(draw, kind):
     """A good input of this kind."""
+    if (ROOT / "tests/files" / kind).is_file():
+        return (ROOT / "tests/files" / kind).read_text()
     if kind == "instance":
         return "% made\n" + random_experience(draw, 5, marker=True).facts()
     if kind == "maps":
@@ -274,6 +277,17 @@ READERS = {  # the calls that read a file, and how to spoil it
             "generate world FILE --loops --along 20 --route walk --steps 3 -o out",
         ],
         EDITS,
+    ),
+    **dict.fromkeys(
+        ("museum.world", "ring.json", "greenhouse.yaml", "manor.trizbort", "bend.maps.json"),
+        (
+            [
+                "generate world FILE --route tour -o out",
+                "generate world FILE --two-way --loops --names --slots 16 --north 0 --route walk "
+                "--steps 3 --world w.graphml -o out",
+            ],
+            EDITS,
+        ),
     ),
     "map": (["generate world FILE --route tour -o out"], EDITS),
     "image": (["generate world floor.yaml --radius 1 --route tour -o out"], EDITS),

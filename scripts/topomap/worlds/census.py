@@ -5,6 +5,7 @@ from collections.abc import Iterator, Mapping
 from itertools import combinations
 from typing import Any, NamedTuple
 
+from topomap.model import words
 from topomap.model.topology import Gateway, Place, TopologicalMap
 
 MOST_PATHS = 2_000  # of each two of these it is asked whether they meet
@@ -43,8 +44,9 @@ class Census(NamedTuple):
 
     def lines(self) -> Iterator[str]:
         """The same in words, each line a sentence."""
+        places, ways = words.number(self.places, "place"), words.number(self.ways, "way")
         yield (
-            f"{self.places} places, {self.ways} ways, {self.slots} slots; loops: {self.loops}, "
+            f"{places}, {ways}, {self.slots} slots; loops: {self.loops}, "
             f"dead ends: {self.dead_ends}, components: {self.components}"
         )
         yield (
@@ -53,9 +55,10 @@ class Census(NamedTuple):
             f"{'not counted' if self.exceptions is None else self.exceptions}; perpendicular: "
             f"{'not told' if self.perpendicular is None else _yes(self.perpendicular)}"
         )
+        views, dstates = words.number(self.views, "kind"), words.number(self.dstates, "dstate")
         yield (
-            f"{self.views} kinds of views; of {self.dstates} dstates, walks tell {self.classes} "
-            f"apart, and {self.with_compass} with a compass"
+            f"{views} of views; of {dstates}, walks tell {self.classes} apart, and "
+            f"{self.with_compass} with a compass"
         )
 
 

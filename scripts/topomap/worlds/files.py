@@ -92,7 +92,7 @@ def load(
         plan.names,
         at.north,
     )
-    kept = plan.slots and slots is None and north is None  # the file tells them
+    kept = plan.slots and slots is None  # the file tells them
     asked = slots is not None and north is not None
     chosen = None if kept or asked else f"{file}: {_chosen(at)}"
     return Loaded(made, told, plan, at, chosen)
