@@ -8,6 +8,7 @@ from topomap.runtime.errors import InputError
 from topomap.runtime.extras import need
 from topomap.runtime.files import output
 from topomap.runtime.folders import INSTANCES
+from topomap.runtime.near import meant
 from topomap.runtime.watch import Watch
 
 
@@ -25,7 +26,8 @@ def figures_under(
     made = figures(Path(instances or INSTANCES), watch)
     for name in names:
         if name not in made:
-            raise InputError(f"{name}: the figures are {', '.join(made)}")
+            hint = f"; {near}" if (near := meant(name, made)) else ""
+            raise InputError(f"{name}: the figures are {', '.join(made)}{hint}")
     for name in names or made:
         watch.title(name)
         figure = made[name]()

@@ -1,7 +1,6 @@
 """What the public functions have in common: the parts of the theory, as keyword arguments, and
 the checks of what they are given."""
 
-import difflib
 import os
 from collections.abc import Collection, Mapping, Sequence
 from typing import Any, TypedDict
@@ -12,6 +11,7 @@ from topomap.model.query import Query
 from topomap.model.vocabulary import FORMS, PARTS, unstated
 from topomap.questions.statements import parse_statement, statement_text
 from topomap.runtime.checks import flag, percent, seconds, shown, whole_if_given
+from topomap.runtime.near import meant
 from topomap.runtime.watch import Watch
 from topomap.worlds.environment import Environment, environment
 from topomap.worlds.senses import Senses
@@ -80,8 +80,8 @@ def asked_of(parts: Mapping[str, Any], allowed: Collection[str]) -> list[str]:
     that are allowed, or is neither true nor false."""
     for part in parts:
         if part not in allowed:
-            near = difflib.get_close_matches(part, allowed, 1)
-            hint = f"; did you mean {near[0]}?" if near else ""
+            near = meant(part, allowed)
+            hint = f"; {near}" if near else ""
             known = ", ".join(allowed)
             raise ValueError(f"{part!r} is not one of the parts {known}{hint}")
     return [part for part, value in parts.items() if flag(part, value)]

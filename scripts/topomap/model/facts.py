@@ -6,7 +6,6 @@ marker), ``compass/2``, ``shift/3``, ``length/2``, ``straight/3``, ``same/2`` an
 ``encodings/topomap.lp``), and comments. Anything else is refused.
 """
 
-import difflib
 import itertools
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -29,6 +28,7 @@ from topomap.model.terms import STRING, cut_short, ground, quoted
 from topomap.runtime import files
 from topomap.runtime.errors import InputError
 from topomap.runtime.limits import DRIFT, LARGEST, STRETCH
+from topomap.runtime.near import nearest
 
 SIGNATURES = {  # the facts of an instance
     "slots": "slots(K)",
@@ -432,9 +432,9 @@ def misfit(fact: clingo.Symbol, forms: Mapping[str, str] = SIGNATURES) -> str | 
             has = "1 argument" if known[name] == 1 else f"{known[name]} arguments"
             more = f", or 2 with a name, {NAMED[name]}" if name in NAMED else ""
             return f"{text}: {name} has {has}, {forms[name]}{more}"
-        near = difflib.get_close_matches(name[:20], known, 1)
+        near = nearest(name, known)
         if fact.positive and near:
-            meant = f"did you mean {near[0]}/{known[near[0]]}?"
+            meant = f"did you mean {near}/{known[near]}?"
             return f"{text}: {name}/{len(arguments)} is not known; {meant}"
         every = ", ".join(f"{name}/{arity}" for name, arity in known.items())
         return f"{text} is not a fact over {every}"

@@ -1,6 +1,5 @@
 """The maps among which the real one may be: those between which a further walk is to decide."""
 
-import difflib
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -14,6 +13,7 @@ from topomap.model.query import Query
 from topomap.model.vocabulary import RELAXING
 from topomap.questions.standings import Standing, standing
 from topomap.runtime.errors import InputError, printable
+from topomap.runtime.near import nearest
 from topomap.runtime.watch import Attempt, Watch
 from topomap.solver import solving
 from topomap.solver.enumeration import best_maps
@@ -124,8 +124,8 @@ def _of_kind(kind: str, whole: Experience, query: Query, watch: Watch) -> Iterab
 
 def _misspelt(name: str) -> str | None:
     """The kind of maps that was meant, if a name is nearly that of one, and of no file."""
-    near = difflib.get_close_matches(name[:20], PARTS_OF, 1, 0.8)
-    return near[0] if near and not Path(name).exists() else None
+    near = nearest(name, PARTS_OF, 0.8)
+    return near if near and not Path(name).exists() else None
 
 
 def _of_file(

@@ -10,6 +10,7 @@ from topomap.model.vocabulary import FIGURES, QUALITIES, RELATIONS
 from topomap.model.words import number, short
 from topomap.runtime.errors import InputError
 from topomap.runtime.limits import LARGEST
+from topomap.runtime.near import meant
 
 if TYPE_CHECKING:  # who only reads a call need not load the solver
     from topomap.model.experience import Experience
@@ -79,7 +80,8 @@ def _unknown(word: str) -> str:
         return "it is said of the whole map, without more"
     if word == "apart":
         return "no such word; write not same(T,U)"
-    return f"no such word; there are {', '.join(dict.fromkeys([*RELATIONS, *FIGURES, *QUALITIES]))}"
+    known = dict.fromkeys([*RELATIONS, *FIGURES, *QUALITIES])
+    return f"no such word; {meant(word, known) or 'there are ' + ', '.join(known)}"
 
 
 def _relation(name: str, arguments: list[str], experience: "Experience") -> tuple[str, str | None]:
@@ -127,8 +129,8 @@ def statement_text(term: str, positive: bool) -> str:
 def _comparison(figure: str, sign: str, text: str) -> tuple[str, bool]:
     """The term of a comparison, and whether it says the same, or the opposite."""
     if figure not in FIGURES:
-        known = ", ".join(FIGURES)
-        raise ValueError(f"{_short(figure)}: no number of a map; there are {known}")
+        hint = meant(figure, FIGURES) or f"there are {', '.join(FIGURES)}"
+        raise ValueError(f"{_short(figure)}: no number of a map; {hint}")
     count = _number(text, "number")
     if sign in ("=", "!="):
         return f"number({FIGURES[figure]},{count})", sign == "="

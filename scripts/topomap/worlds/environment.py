@@ -18,6 +18,7 @@ from topomap.runtime import nx
 from topomap.runtime.checks import share, whole
 from topomap.runtime.errors import InputError
 from topomap.runtime.limits import MOST_PLACES
+from topomap.runtime.near import meant
 from topomap.worlds.senses import Move
 
 UNIT = 100  # as long is a way of a grid or of a lattice
@@ -206,6 +207,9 @@ def _link(links: dict[Gateway, Gateway], a: Gateway, b: Gateway) -> None:
     links[a], links[b] = b, a
 
 
+KINDS = ("grid", "cylinder", "torus", "crescents", "maze", "hexagons", "triangles")
+
+
 def environment(
     kind: str, rows: int, columns: int, thin: float = 0.3, seed: int = 0
 ) -> Environment:
@@ -222,5 +226,5 @@ def environment(
         return lattice(kind, rows, columns)
     if kind in ("grid", "cylinder", "torus", "crescents"):
         return grid(rows, columns, kind)
-    kinds = "grid, cylinder, torus, crescents, maze, hexagons, triangles"
-    raise ValueError(f"{kind!r} is not one of the environments {kinds}")
+    hint = f"; {near}" if (near := meant(str(kind), KINDS)) else ""
+    raise ValueError(f"{kind!r} is not one of the environments {', '.join(KINDS)}{hint}")

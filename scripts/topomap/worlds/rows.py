@@ -4,7 +4,6 @@ Which of both it is, the content tells. Each cell is a list of texts, whatever i
 """
 
 import csv
-import difflib
 import io
 import json
 import re
@@ -15,6 +14,7 @@ from typing import Any, NoReturn
 from topomap.model.terms import quoted
 from topomap.runtime.errors import InputError
 from topomap.runtime.limits import MOST_STEPS
+from topomap.runtime.near import meant
 
 COLUMNS = {
     "exits": "the bearings of the exits that are seen",
@@ -141,9 +141,8 @@ def _demand_columns(where: str, names: Iterable[str]) -> None:
     seen: set[str] = set()
     for name in names:
         if name not in COLUMNS:
-            near = difflib.get_close_matches(name[:20], COLUMNS, 1)
-            meant = f"did you mean {near[0]}?" if near else f"known are {', '.join(COLUMNS)}"
-            raise InputError(f"{where}: column {quoted(name)} is not known; {meant}")
+            hint = meant(name, COLUMNS) or f"known are {', '.join(COLUMNS)}"
+            raise InputError(f"{where}: column {quoted(name)} is not known; {hint}")
         if name in seen:
             raise InputError(f"{where}: column {name} stands there twice")
         seen.add(name)
