@@ -8,13 +8,15 @@ import argparse
 import importlib
 import os.path
 import sys
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from functools import cache
 from typing import Any
 
-from topomap.cli.arguments import STATUS, Parser
+from topomap.cli.arguments import STATUS, Parser, meant_option, option_names
+from topomap.cli.completion import SHELLS, PrintCompletion
 from topomap.cli.subcommands import SUBCOMMANDS
 from topomap.runtime.errors import InputError, say
+from topomap.runtime.near import meant
 from topomap.runtime.status import BAD_INPUT, DONE, INTERRUPTED, PARTIAL
 from topomap.runtime.version import VERSION
 
@@ -52,17 +54,15 @@ def parse(words: Sequence[str]) -> argparse.Namespace:
     """The arguments of a call. Raises InputError on bad usage."""
     first = words[0] if words else ""
     if first and not first.startswith("-") and first not in SUBCOMMANDS:
-        import difflib
-
-        near = difflib.get_close_matches(first, SUBCOMMANDS, 1)
-        hint = f"did you mean {near[0]}? " if near else ""
+        hint = f"{near} " if (near := meant(first, SUBCOMMANDS)) else ""
         raise InputError(f"topomap: no such command: {first!r} ({hint}see topomap --help)")
     parser = _parser(first if first in SUBCOMMANDS else None)
     args, unknown = parser.parse_known_args(words)
     if unknown:
         command = f"topomap {args.command}"
+        hint = f"{near} " if (near := meant_option(unknown, option_names(parser))) else ""
         said = f"unrecognized arguments: {' '.join(unknown)}"
-        raise InputError(f"{command}: {said} (see {command} --help)")
+        raise InputError(f"{command}: {said} ({hint}see {command} --help)")
     if [] in vars(args).values():  # what Python 3.11 makes of --name=--
         raise InputError("topomap: -- is not a value (see topomap --help)")
     _spare_inputs(args)
@@ -93,6 +93,18 @@ def _same(one: str, other: str) -> bool:
         return False
 
 
+def whole_parser() -> Parser:
+    """Make a parser that knows all subcommands with their arguments.
+
+    Completion, the manual page and tests read it. A call is parsed by a parser of its own
+    subcommand, so that the others need not be loaded.
+
+    Returns:
+        The parser.
+    """
+    return _parser_of(SUBCOMMANDS)
+
+
 def _module(name: str) -> Any:
     """The module of a subcommand."""
     return importlib.import_module(f"topomap.cli.{'import_' if name == 'import' else name}")
@@ -100,7 +112,12 @@ def _module(name: str) -> Any:
 
 @cache
 def _parser(name: str | None) -> Parser:
-    """A parser of the subcommand of that name; or one that knows the names of all."""
+    """A parser of the subcommand of that name; or one that knows only the names of all."""
+    return _parser_of([name] if name else [])
+
+
+def _parser_of(names: Collection[str]) -> Parser:
+    """A parser of these subcommands; or, if there are none, one that knows the names of all."""
     parser = Parser(
         prog="topomap",
         description="Exact topological map-building: every map consistent with an exploration.",
@@ -108,10 +125,18 @@ def _parser(name: str | None) -> Parser:
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.add_argument("--version", action="version", version=f"topomap {VERSION}")
+    parser.add_argument(
+        "--print-completion",
+        action=PrintCompletion,
+        choices=SHELLS,
+        metavar="SHELL",
+        help=f"print a script by which a shell completes this command ({', '.join(SHELLS)}); it "
+        "needs the extra complete",
+    )
     group = parser.add_subparsers(metavar="COMMAND", required=True)
-    if name:
+    for name in names:
         _module(name).add(group)
-    else:
-        for one, help in SUBCOMMANDS.items():
-            group.add_parser(one, help=help)
+    if not names:
+        for name, help in SUBCOMMANDS.items():
+            group.add_parser(name, help=help)
     return parser

@@ -4,28 +4,94 @@ not need."""
 import argparse
 import math
 import re
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from typing import Any, NoReturn
 
 from topomap.cli.subcommands import SUBCOMMANDS
 from topomap.model.vocabulary import CHOSEN, FORMS, PARTS
 from topomap.runtime.errors import InputError
 from topomap.runtime.limits import DRAWING, DRIFT, LARGEST, STRETCH
+from topomap.runtime.near import meant
 
 STATUS = """\
 exit status: 0 done; 1 the answer is no (the table differs, no map, an unsound map);
 2 bad input or usage; 3 partial (a limit or time limit was reached, or memory ran out);
 130 interrupted"""
 
+NO_LIMIT = "stop after S seconds (default: no limit)"
+
 
 class Parser(argparse.ArgumentParser):
-    """An argument parser whose errors are one line."""
+    """An argument parser whose errors are one line, with a hint of what may be meant."""
+
+    _words: Sequence[str] = ()
 
     def _print_message(self, message: str, file: Any = None) -> None:
         print(message, end="")  # argparse's own passes over what cannot be written
 
+    def parse_known_args(  # type: ignore[override]  # argparse has several signatures of it
+        self, args: Sequence[str] | None = None, namespace: argparse.Namespace | None = None
+    ) -> tuple[argparse.Namespace, list[str]]:
+        self._words = [*(args or ())]  # for the hint of an error
+        return super().parse_known_args(args, namespace)
+
     def error(self, message: str) -> NoReturn:
-        raise InputError(f"{self.prog}: {message} (see {self.prog} --help)")
+        # A misspelt option that is required is reported as one that is lacking.
+        near = meant_option(self._words, option_names(self)) if "required:" in message else ""
+        hint = f"{near} " if near else ""
+        raise InputError(f"{self.prog}: {message} ({hint}see {self.prog} --help)")
+
+    def _check_value(self, action: argparse.Action, value: Any) -> None:
+        """As argparse does it, but with a hint of the choice that may be meant."""
+        if action.choices is not None and value not in action.choices:
+            choices = [str(choice) for choice in action.choices]
+            hint = f"{near} " if (near := meant(str(value), choices)) else ""
+            known = f"{hint}choose from {', '.join(choices)}"
+            raise argparse.ArgumentError(action, f"invalid choice: {value!r} ({known})")
+
+
+def parsers(parser: argparse.ArgumentParser) -> Iterator[argparse.ArgumentParser]:
+    """Walk through a parser and those of its subcommands, and of their subcommands.
+
+    Parameters:
+        parser: The parser to begin with.
+
+    Yields:
+        Each parser once, a command before its subcommands.
+    """
+    yield parser
+    for action in parser._actions:
+        if isinstance(action, argparse._SubParsersAction):
+            for one in action.choices.values():
+                yield from parsers(one)
+
+
+def option_names(parser: argparse.ArgumentParser) -> set[str]:
+    """Collect the long options of a parser and of its subcommands.
+
+    Parameters:
+        parser: The parser.
+
+    Returns:
+        The options, such as ``--json``.
+    """
+    every = (action for one in parsers(parser) for action in one._actions)
+    return {name for action in every for name in action.option_strings if name[:2] == "--"}
+
+
+def meant_option(words: Iterable[str], known: Collection[str]) -> str:
+    """Ask which option was meant by the first misspelt one of a call.
+
+    Parameters:
+        words: The words of the call.
+        known: The options that there are.
+
+    Returns:
+        The question, such as "did you mean --optimal?"; an empty text if there is none to ask.
+    """
+    given = (word.partition("=")[0] for word in words if word[:2] == "--" and word != "--")
+    strange = (word for word in given if not any(name.startswith(word) for name in known))
+    return next(filter(None, (meant(word, known) for word in strange)), "")
 
 
 def command(group: Any, name: str, example: str) -> Parser:
@@ -84,7 +150,7 @@ def add_start(add: Any, facing: str) -> None:
         type=number(float, 0, 1),
         default=0.0,
         metavar="RATE",
-        help="share of places that carry their own name as a landmark",
+        help="share of the places that have their own name as a landmark (default: %(default)g)",
     )
 
 
@@ -96,7 +162,8 @@ def add_senses(add: Any) -> None:
         type=number(float, 0, 1000),
         metavar="PERCENT",
         help="note how far each step led, with errors of at most so many percent of the way, drawn "
-        "with --seed; the truth is consistent with that --drift, rounded up to a whole number",
+        "with --seed; the truth is consistent with that --drift, rounded up to a whole number "
+        "(default: not noted)",
     )
     add("--lengths", action="store_true", help="note how long each step was")
 
@@ -138,7 +205,7 @@ def add_environments(command: Parser, common: Parser, rest: str) -> Any:
 def _add_file(command: Parser) -> None:
     """How a file with a world is read."""
     add = command.add_argument
-    add("file", metavar="FILE")
+    add("file", metavar="FILE", help="the file of the world")
     add(
         "--slots",
         type=number_or_auto(int, 2),
@@ -186,7 +253,8 @@ def _add_file(command: Parser) -> None:
         "--radius",
         type=number(float, 0),
         metavar="METRES",
-        help="of a picture of a floor: junctions that are no further apart are one place",
+        help="in a floor plan, junctions that are at most so far apart are one place (default: as "
+        "far as the free space around them reaches)",
     )
 
 
@@ -203,16 +271,30 @@ def environment(kinds: Any, kind: str, common: Parser, help: str, example: str) 
 
 
 def add_asked(
-    command: Parser, parts: Iterable[str], horizon: bool = True, limit: str = "stop after S seconds"
+    command: Parser,
+    parts: Iterable[str],
+    horizon: bool = True,
+    limit: str = NO_LIMIT,
 ) -> None:
     """Which maps are asked for, and how long."""
     add = command.add_argument
     for part in parts:
         add(f"--{part.replace('_', '-')}", action="store_true", help=PARTS[part])
-    add("--bound", type=number(int, 1), metavar="B", help="at most B places")
+    add("--bound", type=number(int, 1), metavar="B", help="at most B places (default: no bound)")
     if horizon:
-        add("--horizon", type=number(int, 0), metavar="T", help="cut the experience after step T")
+        add(
+            "--horizon",
+            type=number(int, 0),
+            metavar="T",
+            help="cut the experience after step T (default: the last step)",
+        )
     add("--timeout", type=number(float, 0.001), metavar="S", help=limit)
+
+
+def add_instance(command: Parser, nargs: str | None = None) -> None:
+    """The instance, or the instances, that a command is about."""
+    help = "an instance, the facts of an exploration; - is standard input"
+    command.add_argument("instance", nargs=nargs, metavar="INSTANCE", help=help)
 
 
 def add_known(command: Parser) -> None:
@@ -223,7 +305,7 @@ def add_known(command: Parser) -> None:
         action="append",
         metavar="STATEMENT",
         help="take a statement for granted, such as 'same(3,12)', 'not same(3,12)' or "
-        "'places < 12', as in topomap ask --help; can be given several times",
+        "'places < 12', as in topomap ask --help; can be given several times (default: nothing)",
     )
     add_measured(command)
     add_tolerance(command)

@@ -4,7 +4,7 @@ import argparse
 import json
 from typing import IO, TYPE_CHECKING, Any
 
-from topomap.cli.arguments import add_known, add_query, command
+from topomap.cli.arguments import add_instance, add_known, add_query, command
 from topomap.cli.calls import asked_query, experience_of
 from topomap.runtime import formats
 from topomap.runtime.files import output
@@ -21,7 +21,7 @@ def add(group: Any) -> None:
         "branching",
         "  topomap branching instances/grid-4x4-snake.lp --bound 16",
     )
-    made.add_argument("instance", metavar="INSTANCE")
+    add_instance(made)
     add_known(made)
     add_query(made, ["perpendicular"])
 

@@ -3,7 +3,7 @@
 import argparse
 from typing import Any
 
-from topomap.cli.arguments import add_known, add_query, command, number
+from topomap.cli.arguments import add_instance, add_known, add_query, command, number
 from topomap.cli.calls import asked_query, experience_of
 from topomap.cli.tell import tell
 from topomap.model.vocabulary import PROPERTIES, RELAXING
@@ -21,7 +21,7 @@ def add(group: Any) -> None:
   topomap check instances/grid-3x3-snake.lp maps.json --planar
   topomap check --all instances/grid-3x3-snake.lp maps.json""",
     )
-    made.add_argument("instance", metavar="INSTANCE")
+    add_instance(made)
     made.add_argument(
         "maps",
         metavar="MAPS.json",
@@ -37,7 +37,7 @@ def add(group: Any) -> None:
         type=number(int, 0),
         metavar="K",
         help="a map may disbelieve up to K views, named in its key misread, and no more than its "
-        "file allows",
+        "file allows (default: as many as its file allows)",
     )
     made.add_argument(
         "--all",

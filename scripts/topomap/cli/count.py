@@ -6,6 +6,7 @@ from typing import Any
 from topomap.cli.arguments import (
     add_circumscribe,
     add_crew,
+    add_instance,
     add_known,
     add_query,
     add_resume,
@@ -30,7 +31,7 @@ def add(group: Any) -> None:
   topomap count instances/grid-3x4-paper.lp --circumscribe
   topomap generate grid 4 5 | topomap count - --merging""",
     )
-    made.add_argument("instance", metavar="INSTANCE")
+    add_instance(made)
     add_known(made)
     add_query(made, [part for part in PARTS if part not in OPTIMIZING])
     add_circumscribe(made)

@@ -4,7 +4,7 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from topomap.cli.arguments import add_known, add_query, command, number
+from topomap.cli.arguments import add_instance, add_known, add_query, command, number
 from topomap.cli.calls import asked_query, experience_of
 from topomap.cli.tell import tell
 from topomap.model.vocabulary import CHOSEN
@@ -32,7 +32,7 @@ def add(group: Any) -> None:
   topomap explore grid.lp --bound 16 --facts | clingo encodings/explore.lp - -c n=3""",
     )
     add = made.add_argument
-    add("instance", metavar="INSTANCE")
+    add_instance(made)
     add(
         "--among",
         action="append",

@@ -21,7 +21,11 @@ def add(group: Any) -> None:
         "family",
         "  topomap family instances/batch.txt -d build/instances",
     )
-    made.add_argument("file", metavar="FAMILY")
+    made.add_argument(
+        "file",
+        metavar="FAMILY",
+        help="a family file: each line has the arguments of topomap generate for some instances",
+    )
     made.add_argument(
         "-d",
         "--directory",

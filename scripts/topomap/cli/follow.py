@@ -54,7 +54,7 @@ what is certain: new(T), the place where the agent is after step T was not visit
     )
     add("--planar", action="store_true", help=f"{PARTS['planar']}; of one log only (no start)")
     add("--no-path-axiom", action="store_true", help=PARTS["no_path_axiom"])
-    add("--bound", type=number(int, 1), metavar="B", help="at most B places")
+    add("--bound", type=number(int, 1), metavar="B", help="at most B places (default: no bound)")
     add(
         "--marker",
         action="store_true",
@@ -69,7 +69,12 @@ what is certain: new(T), the place where the agent is after step T was not visit
     )
     add_measured(made)
     add_tolerance(made)
-    add("--timeout", type=number(float, 0.001), metavar="S", help="at most S seconds for each step")
+    add(
+        "--timeout",
+        type=number(float, 0.001),
+        metavar="S",
+        help="take at most S seconds for each step (default: no limit)",
+    )
     add(
         "--keep-going",
         action="store_true",

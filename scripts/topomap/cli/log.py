@@ -55,7 +55,8 @@ def add(group: Any) -> None:
         type=number(float, 0, 180),
         metavar="DEGREES",
         help="if bearings count from north: a way bends by at most so many degrees from one place "
-        "to the next, so the exit by which one arrived is known where the log does not tell it",
+        "to the next, so the exit by which one arrived is known where the log does not tell it "
+        "(default: nothing is known of how ways bend)",
     )
     add(
         "--straight",

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
 from topomap.cli.arguments import (
+    NO_LIMIT,
     Parser,
     add_asked,
     add_environments,
@@ -70,8 +71,13 @@ def add(group: Any) -> None:
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     add = listed.add_argument
-    add("file", metavar="FILE")
-    add("--timeout", type=number(float, 0.001), metavar="S", help="stop after S seconds")
+    add("file", metavar="FILE", help="a file, each line of which is one environment")
+    add(
+        "--timeout",
+        type=number(float, 0.001),
+        metavar="S",
+        help=NO_LIMIT,
+    )
     add("--json", action="store_true", help="write JSON")
     add("-o", "--output", metavar="FILE", help="file to write (default: stdout)")
 

@@ -8,6 +8,7 @@ from topomap.cli.arguments import (
     add_circumscribe,
     add_crew,
     add_encoding,
+    add_instance,
     add_known,
     add_optimal,
     add_query,
@@ -41,11 +42,13 @@ def add(group: Any) -> None:
   topomap solve instances/grid-4x4-snake.lp --bound 16 --jobs 2 -o maps.txt
   topomap solve instances/grid-3x3-misread.lp --optimal --planar --noise 1""",
     )
-    made.add_argument("instance", nargs="+", metavar="INSTANCE")
+    add_instance(made, nargs="+")
     add_known(made)
     add_optimal(made)
     add_circumscribe(made)
-    made.add_argument("--limit", type=number(int, 1), metavar="N", help="stop after N maps")
+    made.add_argument(
+        "--limit", type=number(int, 1), metavar="N", help="stop after N maps (default: no limit)"
+    )
     made.add_argument(
         "--truth",
         metavar="FILE",
@@ -67,7 +70,7 @@ def add(group: Any) -> None:
         type=number(int, 0),
         metavar="K",
         help="allow up to K views to be wrong, as few as possible: gateways and landmarks were "
-        "missed or imagined",
+        "missed or imagined (default: no view is wrong)",
     )
 
 

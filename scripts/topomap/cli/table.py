@@ -4,7 +4,7 @@ import argparse
 import sys
 from typing import Any
 
-from topomap.cli.arguments import add_resume, command, number
+from topomap.cli.arguments import NO_LIMIT, add_resume, command, number
 from topomap.cli.tell import tell
 from topomap.runtime.errors import InputError, say
 
@@ -25,7 +25,10 @@ def add(group: Any) -> None:
     )
     made.add_argument("--json", action="store_true", help="print JSON instead of the table")
     made.add_argument(
-        "--timeout", type=number(float, 0.001), metavar="S", help="stop after S seconds"
+        "--timeout",
+        type=number(float, 0.001),
+        metavar="S",
+        help=NO_LIMIT,
     )
     made.add_argument(
         "-o",

@@ -5,6 +5,7 @@ from importlib.util import find_spec
 from topomap.runtime.errors import InputError
 
 MODULES = {
+    "complete": ("shtab",),
     "draw": ("jinja2", "matplotlib", "numpy", "scipy"),
     "dask": ("distributed",),
     "floorplan": ("PIL", "numpy", "scipy", "skimage", "yaml"),
