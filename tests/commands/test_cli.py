@@ -323,7 +323,7 @@ def test_bad_usage_is_one_line(inside, arguments):
     ("words", "said"),
     [
         (["sovle", GRID], "topomap: no such command: 'sovle' (did you mean solve? see"),
-        (["solve", GRID, "--optimall"], "topomap solve: unrecognized arguments: --optimall (see"),
+        (["solve", GRID, "--optimall"], "topomap solve: unrecognized arguments: --optimall (did"),
     ],
 )
 def test_bad_usage_says_what_may_be_meant(inside, words, said):

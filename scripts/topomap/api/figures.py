@@ -1,4 +1,4 @@
-"""The paper's figures, and some more, drawn into files."""
+"""The paper's figures, and some more, which are drawn into files."""
 
 from collections.abc import Iterator, Sequence
 from pathlib import Path
@@ -15,9 +15,17 @@ from topomap.runtime.watch import Watch
 def figures_under(
     watch: Watch, folder: Path, names: Sequence[str] = (), instances: str | None = None
 ) -> Iterator[Path]:
-    """Draw these figures, or all of them, into a folder, under the watch of a command; each file
-    is given when it is written. ``instances`` is the folder of the instances, if it is another
-    one. Raises InputError, one line, and Stopped."""
+    """Draw these figures, or all of them, into a folder, under the watch of a command.
+
+    ``instances`` is the folder of the instances, if it is not the usual one.
+
+    Yields:
+        The path of each file when it is written.
+
+    Raises:
+        InputError: A figure is not known, or a file cannot be written. One line.
+        Stopped: The command is stopped.
+    """
     need("draw", "topomap figures")
     ready()
     from topomap.drawing import sheet
