@@ -134,8 +134,11 @@ class Map:
 
     @cached_property
     def exceptions(self) -> list[NamedException]:
-        """What is not consistent about the boundaries: paths that meet twice, places that are left
-        and right of a path, and, without the path axiom, paths that hold a place twice."""
+        """The exceptions to consistent boundaries.
+
+        They are paths that meet twice, places that are both left and right of a path and, without
+        the path axiom, paths that contain a place twice.
+        """
         return exceptions_of(self._corrected, self.at)
 
     @property

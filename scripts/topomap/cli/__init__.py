@@ -1,7 +1,7 @@
 """The command ``topomap``: one module for each subcommand, with its parser and what it does.
 
-A module loads what does the work inside ``run``, so that help and a mistyped call need not wait
-for the solver; a test sees to that.
+A module loads what does the work inside ``run``, so that help and the message about a mistyped call
+need not wait for the solver; a test checks this.
 """
 
 import argparse
@@ -22,15 +22,15 @@ from topomap.runtime.version import VERSION
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run the command; returns its exit status."""
+    """Run the command, and return its exit status."""
     try:
         try:
             words = sys.argv[1:] if arguments is None else [*arguments]
-            if words[:1] == ["clingo"]:  # whose options are clingo's own
+            if words[:1] == ["clingo"]:  # clingo parses its own options
                 return int(_module("clingo").run(words[1:]))
             args = parse(words)
             status: int = _module(args.command).run(args)
-        except SystemExit:  # --help and --version
+        except SystemExit:  # it follows --help and --version
             status = DONE
         sys.stdout.flush()
         return status
@@ -51,7 +51,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def parse(words: Sequence[str]) -> argparse.Namespace:
-    """The arguments of a call. Raises InputError on bad usage."""
+    """Parse the arguments of a call.
+
+    Raises:
+        InputError: The usage is bad.
+    """
     first = words[0] if words else ""
     if first and not first.startswith("-") and first not in SUBCOMMANDS:
         hint = f"{near} " if (near := meant(first, SUBCOMMANDS)) else ""
@@ -70,14 +74,17 @@ def parse(words: Sequence[str]) -> argparse.Namespace:
 
 
 def _spare_inputs(args: argparse.Namespace) -> None:
-    """Raise InputError if what is to be written is a file that is to be read: a log that was
-    written by hand is easily lost."""
+    """Refuse to write a file that is to be read: a log that was written by hand is easily lost.
+
+    Raises:
+        InputError: An output is one of the inputs.
+    """
     told = vars(args)
     inputs: list[Any] = []
     for name in ("instance", "file", "given", "maps", "maps_from", "among", "check", "like"):
         value = told.get(name)
         inputs += value if isinstance(value, list) else [value]
-    # What generate writes as the truth, others read.
+    # generate writes the file of --truth; the other commands read it.
     truth = [told.get("truth")]
     written = [told.get(name) for name in ("output", "proof", "log")]
     for name in written + truth * (args.command == "generate"):
@@ -106,18 +113,18 @@ def whole_parser() -> Parser:
 
 
 def _module(name: str) -> Any:
-    """The module of a subcommand."""
+    """Load the module of a subcommand."""
     return importlib.import_module(f"topomap.cli.{'import_' if name == 'import' else name}")
 
 
 @cache
 def _parser(name: str | None) -> Parser:
-    """A parser of the subcommand of that name; or one that knows only the names of all."""
+    """Make a parser of the named subcommand, or one that knows only the names of all."""
     return _parser_of([name] if name else [])
 
 
 def _parser_of(names: Collection[str]) -> Parser:
-    """A parser of these subcommands; or, if there are none, one that knows the names of all."""
+    """Make a parser of these subcommands; if there are none, it knows the names of all."""
     parser = Parser(
         prog="topomap",
         description="Exact topological map-building: every map consistent with an exploration.",

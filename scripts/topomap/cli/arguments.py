@@ -1,5 +1,7 @@
-"""The arguments that several subcommands have in common. Nothing is loaded here that help does
-not need."""
+"""The arguments that several subcommands have in common.
+
+This module loads nothing that help does not need.
+"""
 
 import argparse
 import math
@@ -27,22 +29,28 @@ class Parser(argparse.ArgumentParser):
     _words: Sequence[str] = ()
 
     def _print_message(self, message: str, file: Any = None) -> None:
-        print(message, end="")  # argparse's own passes over what cannot be written
+        print(message, end="")  # argparse would ignore an error in writing
 
     def parse_known_args(  # type: ignore[override]  # argparse has several signatures of it
         self, args: Sequence[str] | None = None, namespace: argparse.Namespace | None = None
     ) -> tuple[argparse.Namespace, list[str]]:
+        """Parse the words of a call, as argparse does, and keep them for the hint of an error."""
         self._words = [*(args or ())]  # for the hint of an error
         return super().parse_known_args(args, namespace)
 
     def error(self, message: str) -> NoReturn:
-        # A misspelt option that is required is reported as one that is lacking.
+        # argparse reports a misspelt option that is required as a missing one.
+        """Refuse a call in one line.
+
+        Raises:
+            InputError: Always.
+        """
         near = meant_option(self._words, option_names(self)) if "required:" in message else ""
         hint = f"{near} " if near else ""
         raise InputError(f"{self.prog}: {message} ({hint}see {self.prog} --help)")
 
     def _check_value(self, action: argparse.Action, value: Any) -> None:
-        """As argparse does it, but with a hint of the choice that may be meant."""
+        """Refuse a value that is not a choice, with a hint of the choice that may be meant."""
         if action.choices is not None and value not in action.choices:
             choices = [str(choice) for choice in action.choices]
             hint = f"{near} " if (near := meant(str(value), choices)) else ""
@@ -95,7 +103,7 @@ def meant_option(words: Iterable[str], known: Collection[str]) -> str:
 
 
 def command(group: Any, name: str, example: str) -> Parser:
-    """The parser of a subcommand, with its help and an example, but no arguments yet."""
+    """Make the parser of a subcommand, with its help and an example, but no arguments yet."""
     help = SUBCOMMANDS[name]
     made: Parser = group.add_parser(
         name,
@@ -109,9 +117,10 @@ def command(group: Any, name: str, example: str) -> Parser:
 
 
 def number(kind: type, least: float, most: float = LARGEST) -> Any:
-    """An argument type: a finite number between bounds, with a plain word on what is not."""
+    """Make an argument type: a finite number between bounds, or a plain message."""
 
     def number(text: str) -> Any:
+        """Read the number from the text of an argument."""
         try:
             value = kind(text) if re.fullmatch(r"[!-^a-~]+", text) else math.nan
         except ValueError:
@@ -127,13 +136,13 @@ def number(kind: type, least: float, most: float = LARGEST) -> Any:
 
 
 def number_or_auto(kind: type, least: float) -> Any:
-    """The same, or ``auto``, which is None."""
+    """Make an argument type: a number as above, or ``auto``, which becomes None."""
     plain = number(kind, least)
     return lambda text: None if text == "auto" else plain(text)
 
 
 def add_start(add: Any, facing: str) -> None:
-    """Where an exploration starts, and what it can see."""
+    """Add the options that tell where an exploration starts, and which landmarks there are."""
     add(
         "--start",
         metavar="PLACE",
@@ -155,7 +164,7 @@ def add_start(add: Any, facing: str) -> None:
 
 
 def add_senses(add: Any) -> None:
-    """What is measured besides views."""
+    """Add the options that tell what is measured besides views."""
     add("--compass", action="store_true", help="note the compass slot of the gateway stood at")
     add(
         "--odometry",
@@ -169,7 +178,7 @@ def add_senses(add: Any) -> None:
 
 
 def add_environments(command: Parser, common: Parser, rest: str) -> Any:
-    """The worlds that can be explored; ``rest`` goes into their examples."""
+    """Add the worlds that can be explored; ``rest`` goes into their examples."""
     name = command.prog.split()[-1]
     kinds = command.add_subparsers(dest="kind", metavar="ENVIRONMENT", required=True)
     for kind, help in (
@@ -196,14 +205,14 @@ def add_environments(command: Parser, common: Parser, rest: str) -> Any:
                 help="share of the ways to take away (default: %(default)s)",
             )
     help = "a world from a file, such as a street network: see docs/files.md for the formats"
-    for kind in ("world", "network"):  # the second name is the older one
+    for kind in ("world", "network"):  # "network" is the older name
         example = f"{name} {kind} city.graphml --slots 4 --north 29 {rest}"
         _add_file(environment(kinds, kind, common, help, example))
     return kinds
 
 
 def _add_file(command: Parser) -> None:
-    """How a file with a world is read."""
+    """Add the options that tell how a file with a world is read."""
     add = command.add_argument
     add("file", metavar="FILE", help="the file of the world")
     add(
@@ -259,6 +268,7 @@ def _add_file(command: Parser) -> None:
 
 
 def environment(kinds: Any, kind: str, common: Parser, help: str, example: str) -> Parser:
+    """Add the parser of a kind of world."""
     added: Parser = kinds.add_parser(
         kind,
         parents=[common],
@@ -276,7 +286,7 @@ def add_asked(
     horizon: bool = True,
     limit: str = NO_LIMIT,
 ) -> None:
-    """Which maps are asked for, and how long."""
+    """Add the options that tell which maps are asked for, and how long the search may take."""
     add = command.add_argument
     for part in parts:
         add(f"--{part.replace('_', '-')}", action="store_true", help=PARTS[part])
@@ -292,13 +302,13 @@ def add_asked(
 
 
 def add_instance(command: Parser, nargs: str | None = None) -> None:
-    """The instance, or the instances, that a command is about."""
+    """Add the instance, or the instances, that a command is about."""
     help = "an instance, the facts of an exploration; - is standard input"
     command.add_argument("instance", nargs=nargs, metavar="INSTANCE", help=help)
 
 
 def add_known(command: Parser) -> None:
-    """What is known of an instance besides its facts."""
+    """Add the options that tell what is known of an instance besides its facts."""
     add = command.add_argument
     add(
         "--assume",
@@ -312,7 +322,7 @@ def add_known(command: Parser) -> None:
 
 
 def add_tolerance(command: Parser) -> None:
-    """How far bearings may be wrong."""
+    """Add the option that tells by how much bearings may be wrong."""
     command.add_argument(
         "--tolerance",
         type=number(int, 0),
@@ -323,7 +333,7 @@ def add_tolerance(command: Parser) -> None:
 
 
 def add_measured(command: Parser) -> None:
-    """How far what was measured may be wrong."""
+    """Add the options that tell by how much measurements may be wrong."""
     add = command.add_argument
     add(
         "--drift",
@@ -340,6 +350,7 @@ def add_measured(command: Parser) -> None:
 
 
 def add_query(command: Parser, parts: Iterable[str], horizon: bool = True) -> None:
+    """Add the options of a query, and those of the output."""
     add_asked(command, parts, horizon)
     add = command.add_argument
     add("--json", action="store_true", help="write JSON")
@@ -347,6 +358,7 @@ def add_query(command: Parser, parts: Iterable[str], horizon: bool = True) -> No
 
 
 def add_optimal(command: Parser) -> None:
+    """Add the option for optimal maps."""
     command.add_argument(
         "--optimal",
         action="store_true",
@@ -357,6 +369,7 @@ def add_optimal(command: Parser) -> None:
 
 
 def add_circumscribe(command: Parser) -> None:
+    """Add the option for circumscribed maps."""
     command.add_argument(
         "--circumscribe",
         action="store_true",
@@ -368,6 +381,7 @@ def add_circumscribe(command: Parser) -> None:
 
 
 def add_encoding(command: Parser) -> None:
+    """Add the option that chooses the rules that clingo gets."""
     command.add_argument(
         "--encoding",
         choices=FORMS,
@@ -378,6 +392,7 @@ def add_encoding(command: Parser) -> None:
 
 
 def add_resume(command: Parser) -> None:
+    """Add the option that goes on with an earlier run."""
     command.add_argument(
         "--resume",
         action="store_true",
@@ -386,6 +401,7 @@ def add_resume(command: Parser) -> None:
 
 
 def add_crew(command: Parser, but: str = "") -> None:
+    """Add the options that share the work out among processes."""
     group = command.add_mutually_exclusive_group()
     group.add_argument(
         "--jobs",
@@ -403,7 +419,7 @@ def add_crew(command: Parser, but: str = "") -> None:
 
 
 def add_scene(command: Parser) -> None:
-    """Arguments of what shows a map."""
+    """Add the arguments of commands that show a map."""
     add = command.add_argument
     add(
         "file",

@@ -46,7 +46,7 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _write(out: IO[str], instance: str, nodes: "BranchingNodes") -> None:
-    """Write the nodes as JSON, each as it comes, and then what they come to."""
+    """Write the nodes as JSON, each as it is found, and then their totals."""
     head = formats.headed({"instance": instance})
     out.write(json.dumps(head)[:-1] + ', "nodes": [')
     for number, node in enumerate(nodes):

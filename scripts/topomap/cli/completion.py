@@ -12,7 +12,7 @@ from typing import Any
 from topomap.runtime.extras import need
 
 SHELLS = ("bash", "zsh", "tcsh")
-# The metavars of arguments whose value is the name of a file, or that of a folder.
+# The metavars of arguments whose value is the name of a file, or the name of a folder.
 FILES = re.compile(r"(FILE|INSTANCE|MAPS|FAMILY|WORLD|LOG)\b")
 FOLDERS = re.compile(r"DIR\b")
 

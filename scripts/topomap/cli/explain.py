@@ -35,7 +35,7 @@ def add(group: Any) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Tell why a statement is so."""
+    """Tell why a statement is impossible or certain."""
     from topomap.api.explain import explain_under
     from topomap.runtime.watch import heeding
 

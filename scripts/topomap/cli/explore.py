@@ -97,7 +97,7 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _check(args: argparse.Namespace, experience: "Experience") -> int:
-    """Check what ``--proof`` wrote."""
+    """Check the proofs that ``--proof`` wrote."""
     from topomap.api.explore import check_proofs
 
     checked = check_proofs(experience, args.check, horizon=args.horizon)

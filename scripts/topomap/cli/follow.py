@@ -134,7 +134,7 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _replay(args: argparse.Namespace, follower: "Follower", log: "Log") -> int:
-    """Go to where a log ends, and say what is known there; the exit status by then."""
+    """Go to the end of a log, say what is known there, and return the exit status so far."""
     from topomap.questions.lines import decoded
 
     record = follower.record
@@ -147,8 +147,10 @@ def _replay(args: argparse.Namespace, follower: "Follower", log: "Log") -> int:
 
 
 def _tell(args: argparse.Namespace, follower: "Follower", begun: float, before: int) -> int:
-    """Print what is known now; the exit status, which was another one before. Once partial, it
-    stays so."""
+    """Print what is known now, and return the exit status.
+
+    ``before`` is the exit status so far; once it is partial, it stays so.
+    """
     from topomap.runtime.watch import Stopped, heeding
 
     with heeding(args.timeout) as watch:

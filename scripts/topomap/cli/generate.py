@@ -121,7 +121,7 @@ def run(args: argparse.Namespace) -> int:
 
 
 def instance_of(args: argparse.Namespace, world: "Environment | None" = None) -> "Instance":
-    """The instance that a call of ``generate`` makes; in a ``world``, if that was made before."""
+    """Make the instance of a call of ``generate``, in a ``world`` if that was made before."""
     from topomap.api.generate import generate
 
     world = world or environment_of(args)

@@ -17,7 +17,7 @@ from topomap.cli.arguments import parsers
 from topomap.runtime.files import output
 from topomap.runtime.version import VERSION
 
-HEADINGS = {"example": "EXAMPLES", "exit status": "EXIT STATUS"}  # of the paragraphs of an epilog
+HEADINGS = {"example": "EXAMPLES", "exit status": "EXIT STATUS"}  # by the first words
 
 
 def pages() -> dict[str, str]:
@@ -46,7 +46,7 @@ def page(parser: argparse.ArgumentParser, others: list[str]) -> str:
     Returns:
         The page, in the macros of man(7).
     """
-    epoch = os.environ.get("SOURCE_DATE_EPOCH")  # for builds that are to be repeated exactly
+    epoch = os.environ.get("SOURCE_DATE_EPOCH")  # for reproducible builds
     date = datetime.fromtimestamp(int(epoch), UTC) if epoch else datetime.now(UTC)
     name = parser.prog.replace(" ", "-")
     lines = [f'.TH {plain(name.upper())} 1 "{date:%Y-%m-%d}" "topomap {VERSION}" "topomap"']

@@ -83,7 +83,7 @@ def add(group: Any) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Let a robot explore, or one after the other."""
+    """Let a robot explore a world, or robots explore a list of worlds."""
     if args.kind == "list":
         return _list(args)
     from topomap.runtime.watch import heeding
@@ -102,7 +102,11 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _environment(args: argparse.Namespace) -> "Environment":
-    """The environment of a call. Raises InputError where there is none, or no such start."""
+    """Make the environment of a call.
+
+    Raises:
+        InputError: There is no such environment, or no such start in it.
+    """
     from topomap.questions.robot import start_of
 
     environment = environment_of(args)
@@ -123,7 +127,7 @@ def _simulated(
 
 
 def _list(args: argparse.Namespace) -> int:
-    """One robot for each line of a file, and what came of them in a table."""
+    """Let a robot explore the world of each line of a file, and write a table."""
     from topomap.questions.robot import ENDED, ENDS, table
     from topomap.runtime.watch import heeding
 
@@ -152,8 +156,12 @@ def _list(args: argparse.Namespace) -> int:
 
 
 def _calls(args: argparse.Namespace) -> "Iterator[tuple[str, argparse.Namespace, Environment]]":
-    """The lines of the file, parsed, each with its environment. Raises InputError naming the line
-    that is no call, or of a start that is not there."""
+    """Parse the lines of the file, each with its environment.
+
+    Raises:
+        InputError: A line is not a call, or its start is not in its world; the message names the
+            line.
+    """
     from topomap.cli import parse
     from topomap.worlds.family import expand
 

@@ -76,7 +76,6 @@ def add(group: Any) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Enumerate the maps of each instance."""
-
     _combined(args)
     inputs = []
     for path in args.instance:
@@ -122,7 +121,11 @@ def _solve_one(
     crew: "Crew",
     out: IO[str],
 ) -> tuple[str | None, bool]:
-    """Write the maps of an instance; why they may not be all, if so, and whether there are any."""
+    """Write the maps of an instance.
+
+    Returns:
+        Why they may not be all, or None, and whether there are any.
+    """
     from topomap.api.solve import solve_under
     from topomap.documents.answers import Report
     from topomap.runtime.watch import Attempt, heeding
@@ -146,15 +149,18 @@ def _solve_one(
                 report.add(one.found)
         fault, way = attempt.fault or answer.fault, None
         if fault is None:
-            with Attempt():  # if it is cut, nothing is claimed
+            with Attempt():  # if it is cut short, nothing is claimed
                 way = answer.in_the_way()
         report.end(fault, by=answer.by, least=answer.least, way=way)
     return fault, bool(report.count)
 
 
 def _combined(args: argparse.Namespace) -> None:
-    """Raises InputError if a preference or misreadings are asked for together with what cannot be
-    combined with them."""
+    """Refuse a preference, or misreadings, together with what cannot be combined with them.
+
+    Raises:
+        InputError: There is such a combination.
+    """
     asked = {
         "--optimal": args.optimal,
         "--minimal": args.minimal,

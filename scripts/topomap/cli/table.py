@@ -46,7 +46,7 @@ def add(group: Any) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Count the paper's table, or what is beyond it, print it and write it as JSON."""
+    """Count the paper's table, or what lies beyond it, print it and write it as JSON."""
     from topomap.api.table import table_beyond_under, table_under
     from topomap.runtime.watch import heeding
 

@@ -1,8 +1,8 @@
-"""What may be meant by a misspelt word: the nearest of those that are known."""
+"""What may be meant by a misspelt word: the nearest of the known words."""
 
 from collections.abc import Iterable
 
-LONGEST = 30  # letters that are compared, as the time grows with their square
+LONGEST = 30  # letters that are compared, because the time grows with the square of their number
 
 
 def nearest(word: str, known: Iterable[str], likeness: float = 0.6) -> str | None:
@@ -16,7 +16,7 @@ def nearest(word: str, known: Iterable[str], likeness: float = 0.6) -> str | Non
     Returns:
         The word, or None if none is like it.
     """
-    import difflib  # a call without a mistake does not need it
+    import difflib  # it is not loaded for a call without a mistake
 
     return next(iter(difflib.get_close_matches(word[:LONGEST], known, 1, likeness)), None)
 

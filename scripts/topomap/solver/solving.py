@@ -71,7 +71,6 @@ def hypotheses(
     """Every hypothesis of a query; if it minimises, better and better ones, and then
     all of the best with their proof. With ``cubes``, which is not for minimising, those
     that begin with the first of them, then a None, and so on."""
-
     shown = Shown()
 
     def read(model: clingo.Model) -> Found:
