@@ -18,7 +18,7 @@ from topomap.runtime.watch import Attempt, Stopped, Watch
 from topomap.solver.defaults import in_the_way
 from topomap.solver.enumeration import proved_or_last
 
-CLOSED = "closed"  # why an answer is partial that was not wanted any more
+CLOSED = "closed"  # why an answer is partial that the caller has closed
 UNFINISHED = "not finished"
 
 
@@ -234,7 +234,7 @@ class Answer(Sequence[Map]):
         none = kind == "no map" and (self._optimal or "closed" in self.query.parts)
         if self.fault is not None or not (none or kind == "best so far"):
             return None
-        self._watch.ended = None  # the search itself has come to its end
+        self._watch.ended = None  # the search itself has ended
         return in_the_way(self.experience, self.query, self._watch)
 
     @property

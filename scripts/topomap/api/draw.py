@@ -13,7 +13,7 @@ from topomap.runtime.files import output
 from topomap.runtime.watch import Late, never
 
 FORMATS = ("svg", "png", "pdf")
-_ALONE = threading.Lock()  # the settings of matplotlib are the process's, not a thread's
+_ALONE = threading.Lock()  # matplotlib has one set of settings for all threads
 
 
 def form_of(file: str | Path) -> str:

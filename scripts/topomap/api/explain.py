@@ -164,7 +164,7 @@ def explain_under(
 ) -> Explained:
     """Explain a statement about the maps of a query, under the watch of a command."""
     seen = experience.cut(LARGEST if query.horizon is None else query.horizon)
-    query = replace(query, horizon=None)  # which ends the experience here
+    query = replace(query, horizon=None)  # the experience has been cut there
     asked = None if statement is None else parse_statement(statement, seen, "explain")
     found = Explanation()
     with Attempt() as attempt:

@@ -22,7 +22,7 @@ from topomap.runtime.checks import flag, shown, whole, whole_if_given
 from topomap.runtime.limits import LARGEST, LONGEST_WALK, MOST_WALKED
 from topomap.runtime.watch import Watch
 
-Among = str | os.PathLike[str] | Map  # a kind of maps, a file of them, or one
+Among = str | os.PathLike[str] | Map  # a kind of maps, a file of maps, or a map
 _ONE = (str, os.PathLike, Map)
 _WANTED = f"a Map, a kind of maps ({', '.join(PARTS_OF)}) or a file of maps is wanted, or several"
 

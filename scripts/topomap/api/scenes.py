@@ -23,9 +23,9 @@ from topomap.runtime.files import read_text
 from topomap.runtime.watch import Watch
 from topomap.worlds.files import load
 
-MANY = 1000  # optimal maps; if there are more, they are not all looked for
-# The share of the time for the search of optimal maps; and if none is found then, the share of the
-# rest for that of a closed one, before any map is taken.
+MANY = 1000  # if there are more optimal maps, not all of them are looked for
+# The share of the time for the search for optimal maps. If none is found, this is the share of the
+# rest of the time for the search for a closed map, before any map is taken.
 OPTIMAL, CLOSED = 0.6, 0.6
 
 
@@ -132,7 +132,7 @@ def drawn_like(scene: Scene, file: str) -> tuple[Scene, str]:
 
     loaded = load(file, two_way=True)
     if loaded.layout.slots != scene.world.slots:
-        with suppress(InputError):  # so many slots may not part all ways
+        with suppress(InputError):  # this number of slots may not separate all ways
             loaded = load(file, slots=scene.world.slots, two_way=True)
     found = likeness(scene.world, loaded.environment.map, loaded.plan)
     told = f"map {scene.number}: {found.note}" if found.note else ""

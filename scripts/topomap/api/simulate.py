@@ -20,7 +20,7 @@ from topomap.worlds.environment import Environment
 from topomap.worlds.instance import NOTHING
 from topomap.worlds.senses import Senses
 
-STEPS = 20  # for each way
+STEPS = 20  # the default number of steps for each way
 
 
 @dataclass(frozen=True, repr=False)

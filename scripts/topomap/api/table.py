@@ -14,7 +14,7 @@ from topomap.runtime.watch import Attempt, Watch
 from topomap.solver.crews import crew as crew_of
 
 Row = dict[str, Any]
-Noted = Callable[[int, int], None]  # how many columns are counted, and of how many
+Noted = Callable[[int, int], None]  # it is told how many of all columns are counted
 
 
 class Table(Reply):

@@ -13,12 +13,12 @@ from topomap.runtime.limits import DRIFT, STRETCH
 
 DState = tuple[int, int]
 Misread = tuple[int, int | str]  # a step, and a gateway or a landmark that was missed or imagined
-MOST_SLOTS = 10**6  # sums of slots then stay below it
+MOST_SLOTS = 10**6  # sums of slots then stay below clingo's largest number
 MARKER = ("drop", "pick", "marker")
 Shift = tuple[int, int]  # how far a step moved the agent, in one fixed frame
 Thing = tuple[str, int, str]  # one of MARKER, a step, and the name of a marker
 Visits = tuple[int, int]  # two visits, each named by its step, the earlier one first
-Slots = tuple[int, int]  # of two gateways of one visit, the lower one first
+Slots = tuple[int, int]  # the slots of two gateways of one visit, the lower one first
 
 
 @dataclass(frozen=True)
@@ -44,7 +44,7 @@ class Step:
     start: bool = False
     look: bool = False
     things: frozenset[tuple[str, str]] = frozenset()  # one of MARKER, and the name
-    straight: frozenset[Slots] | None = None  # None where no pairs of gateways are told
+    straight: frozenset[Slots] | None = None  # None if no pairs of gateways are told
 
 
 @dataclass(frozen=True, init=False)
@@ -333,7 +333,7 @@ class Experience:
         """
         told = [f"drift={self.drift}"] * bool(self.shifts)
         told += [f"stretch={self.stretch}"] * bool(self.lengths)
-        # No two slots are further apart than all of them.
+        # Two slots cannot be further apart than the number of slots.
         told += [f"tolerance={min(self.tolerance, self.slots)}"] * bool(self.tolerance)
         return [option for one in told for option in ("-c", one)]
 
@@ -795,7 +795,7 @@ def _straight(given: Iterable[Iterable[Slots]], many: int) -> tuple[frozenset[Sl
         pairs = set()
         for pair in collection(name, of):
             one, other = (integer(f"{name}: slot", slot) for slot in _two(name, pair, "two slots"))
-            if one != other:  # else it is told of a gateway that it ends its path
+            if one != other:  # an equal pair says that the gateway ends its path
                 pairs.add((min(one, other), max(one, other)))
         told.append(frozenset(pairs))
     if told and len(told) != many:
@@ -885,7 +885,7 @@ def _marker(
     put: set[int] = set()
     taken: set[int] = set()
     seen: set[int] = set()
-    lies: list[Place] = []  # where
+    lies: list[Place] = []  # the place where the marker lies, if it does
     for step, (place, _) in enumerate(dstates):
         if place in lies:
             seen.add(step)

@@ -7,7 +7,7 @@ from typing import Any
 from topomap.model.words import short
 from topomap.runtime.errors import printable
 
-MOST_SHOWN = 80  # letters of what a reply comes to, in the text that Python shows of it
+MOST_SHOWN = 80  # letters of the gist in ``repr``
 
 
 class Reply(ABC):
