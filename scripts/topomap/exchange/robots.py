@@ -18,9 +18,7 @@ from topomap.model.topology import Place
 ACTION = "navigate_to_pose"
 # The format needs a date. It is always this one, so that one map always gives the same bytes.
 UPDATED = "01-01-1970_00-00-00"
-ZONE = (
-    0.5  # metres: half the side of the square round a node in which a robot counts as being there
-)
+ZONE = 0.5  # metres: half the side of the square in which a robot counts as being at a node
 
 
 class Node(NamedTuple):

@@ -330,9 +330,8 @@ class Facts:
     def _pair_faults(self, step: int, slots: int | None, noisy: bool) -> Iterator[Fault]:
         """Find what is wrong with the pairs of gateways that are told of a step."""
         view = self.views.get(step, {})
-        told: dict[
-            int, dict[int, tuple[int, str]]
-        ] = {}  # for each slot the other slots of its pairs, with lines
+        # For each slot the other slots of its pairs, with lines.
+        told: dict[int, dict[int, tuple[int, str]]] = {}
         for (one, other), line in self.known["straight"].get(step, {}).items():
             fact = f"straight({step},{one},{other})"
             for slot, end in (one, other), (other, one):
@@ -469,9 +468,8 @@ def misfit(fact: clingo.Symbol, forms: Mapping[str, str] = SIGNATURES) -> str | 
 _TOKEN = re.compile(rf'%\*|%[^\n]*|\.\.|{STRING}|\.|[^%".]+|"', re.DOTALL)
 _COMMENT = re.compile(r"%\*|\*%|[^%*]+|[%*]", re.DOTALL)
 _FACT = re.compile(r"-?[a-z]\w*\(.*\)", re.DOTALL)
-_DECIMAL = re.compile(
-    r"[a-z]\w*\([^()]*,\s*-?[0-9]+", re.DOTALL
-)  # a fact that a decimal point has cut short
+# A fact that a decimal point has cut short.
+_DECIMAL = re.compile(r"[a-z]\w*\([^()]*,\s*-?[0-9]+", re.DOTALL)
 _NUMBERS = re.compile(r"([a-z]\w*)\(((?:0|-?[1-9][0-9]{0,8})(?:,(?:0|-?[1-9][0-9]{0,8}))*)\)")
 _NO_STOP = re.compile(r"\)\s+[a-z]\w*\(")
 
