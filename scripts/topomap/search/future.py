@@ -57,7 +57,7 @@ class Future:
                 self.ends[self.out[step]].append(step)
                 self.ends[self.arrival[step]].append(step)
                 self.leaving[self.out[step]].append(step)
-        # For the place that a step may make: the number of its gateways of each kind, apart from the
+        # For the place that a step may make: the number of its gateways of each kind, except the
         # one of arrival. (The kind of that one is listed even with 0, because the step uses up one
         # end of it.) And the last step after which all these gateways can still be linked.
         self.kinds_of: list[list[tuple[int, int]]] = []
@@ -73,7 +73,7 @@ class Future:
         for one, other, apart in pairs:
             self._others[one].append((other, apart))
             self._others[other].append((one, -apart))
-        # For each visit the kind of its place, named by the least kind of its gateways; and for each
+        # For each visit the kind of its place, named by the least kind of its gateways; for each
         # such kind, the least number of places of a map.
         self.place_kind = [
             min(kinds[step * self.slots + slot] for slot in view)

@@ -74,8 +74,8 @@ class Hypothesis:
         self.stars: list[Face] = []  # the place that each step would make, counter-clockwise
         self.views: dict[int, int] = {}  # for each gateway, the number of what is seen from it
         numbers: dict[Any, int] = {}
-        # The compass is a part of the view if it is told of each visit, and exact. What is seen from
-        # the gateways of a visit is computed once for all visits that see the same.
+        # The compass is a part of the view if it is told of each visit, and exact. What is seen
+        # from the gateways of a visit is computed once for all visits that see the same.
         north = experience.compass_told() == experience.steps + 1 and not experience.tolerance
         known: dict[Any, list[tuple[int, int]]] = {}
         for step, view in enumerate(experience.views):
@@ -96,8 +96,8 @@ class Hypothesis:
         for step, down, spotted, _ in experience.lying():
             self.lying.setdefault(step, []).append((down, spotted))
         self.evidence = Evidence(experience, compass=not north)
-        # For each place its visits, and for each link (by the lower of its gateways) the steps along
-        # it, if these are needed.
+        # For each place its visits, and for each link (by the lower of its gateways) the steps
+        # along it, if these are needed.
         self.visits: dict[int, list[int]] = {0: [0]}
         self.steps_along: dict[int, list[int]] = {}
         self.steps = 0  # the number of steps that were entered

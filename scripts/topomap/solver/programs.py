@@ -105,8 +105,7 @@ class Program:
                 self.say("")
                 self.control.add("base", [], facts)
                 if "rare(" in facts:
-                    # Type: ignore[union-attr].
-                    self.control.configuration.solver.heuristic = "Domain"
+                    self.control.configuration.solver.heuristic = "Domain"  # type: ignore[union-attr]
             self.control.ground()
             self._heed(self.control)
             self._grounded = True
