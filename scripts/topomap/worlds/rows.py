@@ -1,6 +1,7 @@
-"""The rows of a log that somebody wrote as a table, CSV, or as JSON lines: one row for each visit.
+"""The rows of a log that somebody wrote as a table (CSV) or as JSON lines.
 
-Which of both it is, the content tells. Each cell is a list of texts, whatever it was written as.
+There is one row for each visit. The content tells which format it is. Each cell is a list of texts,
+in either format.
 """
 
 import csv
@@ -40,7 +41,7 @@ NO, YES = {"", "no", "false", "0"}, {"yes", "true", "1", "x"}
 
 @dataclass(frozen=True)
 class Row:
-    """A row: the line where it begins, the number of its visit, and its cells."""
+    """A row: the line in which it begins, the number of its visit, and its cells."""
 
     file: str
     line: int
@@ -48,11 +49,11 @@ class Row:
     cells: dict[str, list[str]]
 
     def fault(self, said: str) -> InputError:
-        """A fault of this row, in one line."""
+        """The error about a fault of this row, in one line."""
         return InputError(f"{self.file}:{self.line}: step {self.step}: {said}")
 
     def one(self, name: str) -> str | None:
-        """The one value of a cell; None if it is empty."""
+        """The only value of a cell; None if it is empty."""
         values = self.cells.get(name, [])
         if len(values) > 1:
             told = quoted(" ".join(values))
@@ -78,7 +79,7 @@ class Row:
 
 
 def number(text: str) -> float | None:
-    """A finite number, as people write it; None if a text is none."""
+    """Read a finite number as people write it; None if a text is none."""
     if len(text) > 40 or not re.fullmatch(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?", text, re.ASCII):
         return None
     value = float(text)
@@ -86,7 +87,11 @@ def number(text: str) -> float | None:
 
 
 def rows_of(file: str, text: str) -> list[Row]:
-    """The rows of a log. Raises InputError, one line, which names the line and the step."""
+    """Read the rows of a log.
+
+    Raises:
+        InputError: It has a fault. One line, which names the line and the step.
+    """
     first = text.lstrip()[:1]
     if first == "[":
         raise InputError(f"{file}: a JSON list; JSON lines are wanted, one object a line")
@@ -101,7 +106,7 @@ def rows_of(file: str, text: str) -> list[Row]:
 
 
 def _table(file: str, text: str) -> Iterator[tuple[int, dict[str, list[str]]]]:
-    """The cells of each row of CSV, with the line where the row begins."""
+    """The cells of each row of CSV, with the line in which the row begins."""
     lines = io.StringIO(text, newline="")
     start = next((line for line in io.StringIO(text, newline="") if line.strip()), "")
     delimiter = max(DELIMITERS, key=start.count)
@@ -137,7 +142,7 @@ def _table(file: str, text: str) -> Iterator[tuple[int, dict[str, list[str]]]]:
 
 
 def _demand_columns(where: str, names: Iterable[str]) -> None:
-    """Demand that each name is one of a column, and stands there once."""
+    """Check that each name is the name of a column, and stands there once."""
     seen: set[str] = set()
     for name in names:
         if name not in COLUMNS:
@@ -151,8 +156,11 @@ def _demand_columns(where: str, names: Iterable[str]) -> None:
 
 
 def _split(name: str, text: str, commas: bool = True) -> list[str]:
-    """The values in a cell. A comma parts bearings only where a number cannot have one, as in a
-    table whose columns are parted by commas."""
+    """Split a cell into its values.
+
+    A comma separates bearings only if it cannot be part of a number, as in a table whose columns
+    are separated by commas.
+    """
     if name in BEARINGS:
         return re.split(r"[\s;|/,]+" if commas else r"[\s;|/]+", text.strip(" ;|/,\t\n\r"))
     if name in LISTS:
@@ -182,7 +190,7 @@ def _json_lines(file: str, text: str) -> Iterator[tuple[int, dict[str, list[str]
 
 
 class _Pairs(list[tuple[str, Any]]):
-    """A JSON object as it is written, whose names may stand there twice."""
+    """A JSON object as it is written, in which a name may occur twice."""
 
 
 def _refused(constant: str) -> NoReturn:
@@ -190,7 +198,7 @@ def _refused(constant: str) -> NoReturn:
 
 
 def _texts(where: str, name: str, value: Any) -> list[str]:
-    """A value of JSON as a cell. What stands in a list is taken as it is."""
+    """Read a value of JSON as a cell; the items of a list are taken as they are."""
     if value is None or value is False:
         return []
     if value is True:

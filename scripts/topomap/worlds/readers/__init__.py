@@ -1,9 +1,9 @@
-"""Readers of the files that explorers have, one module a format.
+"""Readers of the files that explorers have, with one module for each format.
 
-Each module has ``fits(name, content)``, which says whether a file looks like this format, and
-``read(file, content, reading)``, which makes a ``Plan`` of it, or raises InputError: one line that
-names the file, and the line or the item where the fault is. ``FORMATS`` names all of them, in the
-order in which they are tried.
+Each module has ``fits(name, content)``, which tells whether a file looks like this format, and
+``read(file, content, reading)``, which makes a ``Plan`` of it or raises InputError. The message is
+one line that names the file, and the line or the item with the fault. ``FORMATS`` lists the modules
+in the order in which they are tried.
 """
 
 from importlib import import_module
@@ -27,7 +27,11 @@ FORMATS = {
 
 
 def read(file: str | Path, reading: Reading) -> Plan:
-    """The plan in a file, whose format is told by its content. Raises InputError, one line."""
+    """Read the plan in a file, whose content tells its format.
+
+    Raises:
+        InputError: It cannot be read. One line.
+    """
     content = read_bytes(file)
     for name in FORMATS:
         reader = import_module(f"{__name__}.{name}")

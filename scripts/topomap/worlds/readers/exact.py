@@ -1,11 +1,12 @@
-"""Worlds whose links name their gateways: graphs that topomap writes, and what other readers make
-of slots that a file tells.
+"""Worlds whose links name their gateways.
 
+These are the graphs that topomap writes, and what other readers make of slots that a file tells.
 Such a graph says how many ``slots`` there are, and may say where slot 0 points (``north``). Each
-edge has its ``ends``, two gateways ``[P,S]``, and may have a ``move``, how far it leads from the
-first of them to the second, east and north. A node may have its ``gateways``, ``landmarks``, a
-``name``, and coordinates ``x`` and ``y``. The graph may have ``straight``, pairs of gateways that
-are on one path: ``[[P,S,R], ...]``. Lists are JSON texts where a format has no lists.
+edge has its ``ends``, two gateways ``[P,S]``, and may have a ``move``, which is how far it leads
+from the first of them to the second, east and north. A node may have its ``gateways``,
+``landmarks``, a ``name``, and coordinates ``x`` and ``y``. The graph may have ``straight``, the
+pairs of gateways that are on one path: ``[[P,S,R], ...]``. Lists are JSON texts in a format that
+has no lists.
 """
 
 import json
@@ -37,13 +38,17 @@ class Link(NamedTuple):
 
 
 def fits(graph: "nx.Graph[Any]") -> bool:
-    """Whether the links of a graph name their gateways."""
+    """Tell whether the links of a graph name their gateways."""
     edges = graph.edges(data=True)
     return "slots" in graph.graph and all("ends" in data for _, _, data in edges)
 
 
 def plan_of(file: str, graph: "nx.Graph[Any]") -> Plan:
-    """The plan of such a graph. Raises InputError on bad input."""
+    """Make the plan of such a graph.
+
+    Raises:
+        InputError: The graph has a fault.
+    """
     demand_few(file, len(graph))
     names = {node: name_of(file, f"place {shown(node)}", node) for node in graph}
     places = numbered({*names.values()})
@@ -110,8 +115,13 @@ def plan(
     pending: int = 0,
     told: Sequence[str] = (),
 ) -> Plan:
-    """The plan of links whose slots are known; so many gateways have no link, and are left out.
-    Raises InputError if a gateway has two links, or is no gateway."""
+    """Make the plan of links whose slots are known.
+
+    ``pending`` gateways have no link, and are left out.
+
+    Raises:
+        InputError: A gateway has two links, or is not a gateway.
+    """
     ends: dict[Gateway, Gateway] = {}
     for link in links:
         for (place, slot), other in (link[:2], (link.other, link.one)):
@@ -138,6 +148,7 @@ def plan(
             told_once.update(pair)
 
     def leave(gateway: Gateway) -> Exit:
+        """The exit of a gateway."""
         return Exit(gateway[0], (north + 360 * gateway[1] / slots) % 360)
 
     return Plan(
@@ -156,7 +167,11 @@ def plan(
 
 
 def demand_slots(file: str, told: object) -> int:
-    """A number of slots. Raises InputError."""
+    """Read a number of slots.
+
+    Raises:
+        InputError: It is none.
+    """
     try:
         slots = _slot(told)
     except ValueError:

@@ -1,9 +1,9 @@
-"""Street and corridor networks in GraphML, as OSMnx writes and networkx reads.
+"""Street and corridor networks in GraphML, as OSMnx writes and networkx reads them.
 
-Directed or undirected (multi)graphs. Nodes have coordinates x, y (projected, or longitude and
-latitude) or lon, lat. Edges may have their course (``geometry``): WKT, ``LINESTRING (x y, ...)``,
-or a list of points. An edge without one is straight. Two opposite directed edges of one course are
-one way; one that has no opposite edge can be gone one way only.
+They are directed or undirected (multi)graphs. Nodes have coordinates x, y (projected, or longitude
+and latitude) or lon, lat. Edges may have their course (``geometry``) as WKT, ``LINESTRING (x y,
+...)``, or as a list of points. An edge without a course is straight. Two opposite directed edges
+with one course are one way; an edge that has no opposite edge can be gone one way only.
 """
 
 import io
@@ -29,24 +29,32 @@ from topomap.worlds.plan import Plan, Point, Reading, Way
 from topomap.worlds.readers import exact
 
 Data = Mapping[str, Any]  # what is told of an edge
-DEGREE = 111_195  # metres of a degree of latitude, on a sphere of 6,371 km
-NO, YES = {"false", "0", "no"}, {"true", "1", "yes"}  # what is written of one-way edges
+DEGREE = 111_195  # metres of a degree of latitude, for an earth radius of 6,371 km
+NO, YES = {"false", "0", "no"}, {"true", "1", "yes"}  # the values of the attribute oneway
 
 
 def fits(name: str, content: bytes) -> bool:
-    """Whether a file is GraphML."""
+    """Tell whether a file is GraphML."""
     begins = content[:4000].lstrip(b"\xef\xbb\xbf \t\r\n").lower()
     return begins[:1] == b"<" and b"graphml" in begins
 
 
 def read(file: str, content: bytes, reading: Reading) -> Plan:
-    """The plan in a GraphML file. Raises InputError on bad input."""
+    """Read the plan in a GraphML file.
+
+    Raises:
+        InputError: The file has a fault.
+    """
     graph = read_graphml(file, content)
     return exact.plan_of(file, graph) if exact.fits(graph) else plan_of(file, graph, reading)
 
 
 def read_graphml(file: str | Path, content: bytes, node_type: type = str) -> "nx.Graph[Any]":
-    """The graph in the content of a GraphML file. Raises InputError, one line."""
+    """Read the graph in the content of a GraphML file.
+
+    Raises:
+        InputError: There is none. One line.
+    """
     try:
         fromstring(content, forbid_dtd=True)
         with warnings.catch_warnings():
@@ -58,14 +66,18 @@ def read_graphml(file: str | Path, content: bytes, node_type: type = str) -> "nx
         ) from None
     except MemoryError:
         raise
-    except Exception as error:  # networkx has all kinds of errors for what it cannot read
+    except Exception as error:  # networkx raises all kinds of errors on bad files
         reason = " ".join(str(error).split())[:200]
         raise InputError(f"{file}: not a GraphML file that networkx reads: {reason}") from None
     return graph
 
 
 def plan_of(file: str, graph: "nx.Graph[Any]", reading: Reading) -> Plan:
-    """The plan of a graph whose nodes have coordinates. Raises InputError on bad input."""
+    """Make the plan of a graph whose nodes have coordinates.
+
+    Raises:
+        InputError: The graph has a fault.
+    """
     edges = _edges(graph)
     loops = [edge for edge in edges if edge[0] == edge[1]]
     if not reading.loops:
@@ -119,8 +131,11 @@ def plan_of(file: str, graph: "nx.Graph[Any]", reading: Reading) -> Plan:
 
 
 def _edges(graph: "nx.Graph[Any]") -> list[tuple[Place, Place, Data, bool]]:
-    """The ways in order of their places: their ends, what is told of them, and whether they can be
-    gone only from the first end to the second."""
+    """The ways, in the order of their places.
+
+    Each has its ends, what is told of it, and whether it can be gone only from the first end to the
+    second.
+    """
     made: list[tuple[Place, Place, Data, bool]] = []
     between: dict[tuple[Place, Place], list[Data]] = defaultdict(list)
     data: Data
@@ -138,7 +153,7 @@ def _edges(graph: "nx.Graph[Any]") -> list[tuple[Place, Place, Data, bool]]:
             for data in between[one, other]:
                 opposite = _opposite(data, between[one, other] if one == other else back)
                 if one == other:
-                    # A loop stands twice if it can be gone both ways.
+                    # A loop that can be gone both ways occurs twice.
                     if opposite is not None and _key(opposite) < _key(data):
                         continue
                 elif opposite is not None:
@@ -149,7 +164,7 @@ def _edges(graph: "nx.Graph[Any]") -> list[tuple[Place, Place, Data, bool]]:
 
 
 def _one_way(data: Data) -> bool:
-    """Whether a directed edge without an opposite one can be gone one way only."""
+    """Tell whether a directed edge without an opposite edge can be gone one way only."""
     return str(data.get("oneway", "")).lower() not in NO
 
 
@@ -158,7 +173,7 @@ def _key(data: Data) -> str:
 
 
 def _opposite(data: Data, others: Sequence[Data]) -> Data | None:
-    """The edge of the same course in the other direction, if there is one."""
+    """The edge with the same course in the other direction, if there is one."""
     course = _points(_key(data))
     for other in others:
         back = _points(_key(other))
@@ -171,7 +186,11 @@ def _opposite(data: Data, others: Sequence[Data]) -> Data | None:
 
 
 def _points(text: str) -> list[Point] | None:
-    """The points of a course as it is written; None if there is none. Raises ValueError."""
+    """Read the points of a course; None if there is none.
+
+    Raises:
+        ValueError: It cannot be read.
+    """
     text = text.strip()
     if not text:
         return None
@@ -210,8 +229,10 @@ def _in_plane(point: Point, origin: Point) -> Point:
 
 
 def _in_degrees(point: Point, origin: Point) -> Point:
-    """Metres east and north of another point, both in degrees of longitude and latitude. A degree
-    of longitude is taken to be as long as at the middle of their latitudes."""
+    """Metres east and north of another point, both in degrees of longitude and latitude.
+
+    A degree of longitude is taken to be as long as at the mean of their latitudes.
+    """
     east = (point[0] - origin[0] + 180) % 360 - 180
     middle = math.radians((point[1] + origin[1]) / 2)
     return DEGREE * east * math.cos(middle), DEGREE * (point[1] - origin[1])
@@ -232,16 +253,18 @@ def _point(file: str, graph: "nx.Graph[Any]", place: Place) -> Point:
 
 
 def _degrees(graph: "nx.Graph[Any]", points: Mapping[Place, Point]) -> bool:
-    """Whether the coordinates are degrees of longitude and latitude, as the coordinate reference
-    system says. Without one they are taken to be of a plane, as those of a robot are, unless they
-    stand under the names lon and lat."""
+    """Tell whether the coordinates are degrees of longitude and latitude.
+
+    The coordinate reference system says so. Without one they are taken to be of a plane, as those
+    of a robot are, unless they have the names lon and lat.
+    """
     if crs := str(graph.graph.get("crs", "")).lower():
         return bool(re.search(r"4326|4258|4269|crs84|longlat|latlong", crs))
     return not any("x" in graph.nodes[place] for place in points)
 
 
 def _provenance(graph: "nx.Graph[Any]") -> tuple[str, ...]:
-    """Source and licence, where the file tells them."""
+    """Source and licence, if the file tells them."""
     maker = str(graph.graph.get("created_with", ""))
     if not maker.startswith("OSMnx"):
         return ()

@@ -1,8 +1,9 @@
-"""Floor plans as map_server of ROS has them: a YAML file, with a PNG or PGM image beside it.
+"""Floor plans of map_server of ROS: a YAML file, with a PNG or PGM image beside it.
 
 Free space is where the image says so by the thresholds of the file. ``skeletons`` finds its places
-and the ways between them; they are numbered from 1, as lines of a page are read. North is the y
-axis of the map: up in the image, but for the third number of ``origin``, by which it is turned.
+and the ways between them; the places are numbered from 1, in the order of reading a page. North is
+the y axis of the map: it points up in the image, apart from the third number of ``origin``, by
+which the image is turned.
 """
 
 import math
@@ -28,7 +29,7 @@ REQUIRED = "image", "resolution", "origin", "negate", "occupied_thresh", "free_t
 
 
 def fits(name: str, content: bytes) -> bool:
-    """Whether a file is the YAML file of a map."""
+    """Tell whether a file is the YAML file of a map."""
     start = content[: 2 * MOST_YAML]
     return start.lstrip()[:1] != b"<" and all(
         re.search(rb"(?m)(^|[{,])[ \t]*[\"']?%s[\"']?[ \t]*:" % key, start)
@@ -37,7 +38,11 @@ def fits(name: str, content: bytes) -> bool:
 
 
 def read(file: str, content: bytes, reading: Reading) -> Plan:
-    """The plan in a map. Raises InputError on bad input."""
+    """Read the plan in a map.
+
+    Raises:
+        InputError: The file has a fault.
+    """
     need("floorplan", file)
     from topomap.worlds import skeletons
 
@@ -109,7 +114,10 @@ def read(file: str, content: bytes, reading: Reading) -> Plan:
 
 
 def _told(file: str, content: bytes) -> Mapping[str, Any]:
-    """What the YAML file says. Tags, anchors and references are refused before anything is made."""
+    """Read what the YAML file says.
+
+    Tags, anchors and references are refused before any object is made.
+    """
     import yaml
 
     if len(content) > MOST_YAML:
@@ -140,7 +148,7 @@ def _told(file: str, content: bytes) -> Mapping[str, Any]:
 
 def _number(file: str, told: Mapping[str, Any], key: str) -> float:
     try:
-        # What YAML takes for a text may be a number, such as 5e-2.
+        # Some numbers are texts for YAML, such as 5e-2.
         number = math.nan if isinstance(told[key], bool) else float(told[key])
     except (TypeError, ValueError, OverflowError):
         number = math.nan
@@ -150,8 +158,11 @@ def _number(file: str, told: Mapping[str, Any], key: str) -> float:
 
 
 def _free_space(file: str, image: str, negate: bool, free: float, mode: str) -> "tuple[Grid, int]":
-    """Where the image beside a file is free, and how many rows it has. The size is looked at before
-    memory is taken for the pixels. What is transparent is unknown, so not free."""
+    """Find where the image beside a file is free, and how many rows it has.
+
+    Its size is checked before memory is allocated for the pixels. What is transparent is unknown,
+    and so not free.
+    """
     import numpy as np
     from PIL import Image
 
@@ -174,12 +185,12 @@ def _free_space(file: str, image: str, negate: bool, free: float, mode: str) -> 
         if error.strerror:
             raise of_file(path, error) from None
         raise InputError(f"{name} is not a PNG or PGM image, or not a whole one") from None
-    except Exception as error:  # Pillow has all kinds of errors for what it cannot read
+    except Exception as error:  # Pillow raises all kinds of errors on bad files
         reason = printable(" ".join(str(error).split()))[:200]
         raise InputError(f"{name} cannot be read: {reason}") from None
     grey, known = pixels
     grey = np.float32(255) - grey if negate else grey
-    if mode == "raw":  # the value is the chance in percent
+    if mode == "raw":  # the value is a probability in percent
         known &= grey <= 100
         taken = grey / 100
     else:
@@ -188,8 +199,10 @@ def _free_space(file: str, image: str, negate: bool, free: float, mode: str) -> 
 
 
 def _grey(picture: Any) -> Any:
-    """Of each pixel how bright it is, 0 to 255, the mean of its colours; and whether it is known,
-    which transparent ones are not."""
+    """The brightness of each pixel, from 0 to 255, as the mean of its colours.
+
+    It is told, too, whether each pixel is known; transparent ones are not.
+    """
     import numpy as np
 
     if picture.mode.startswith("I"):
@@ -203,7 +216,7 @@ def _grey(picture: Any) -> Any:
 
 
 def _beside(file: str, image: str) -> Path:
-    """The path of an image in the folder of a file, or below."""
+    """The path of an image in the folder of a file, or below it."""
     if file == "-":
         raise InputError(f"{file}: its image is in its folder, so it must be given by its name")
     said = f"{file}: image: {printable(image)[:200]}"
@@ -232,7 +245,7 @@ def _course(net: "Net", one: int, other: int, line: Any, flat: Any) -> list[Poin
 
 
 def _changed(file: str, net: "Net") -> list[str]:
-    """What was changed and left out, a line for each kind."""
+    """What was changed and left out, with a line for each kind."""
     return [
         f"{file}: {what}: {number}"
         for what, number in (

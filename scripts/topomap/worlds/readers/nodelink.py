@@ -1,10 +1,10 @@
-"""Graphs in node-link JSON, as networkx, D3 and others write them.
+"""Graphs in node-link JSON, as networkx, D3 and other programs write them.
 
-Nodes stand under ``nodes``, edges under ``links`` or ``edges``. An edge has ``source`` and
-``target`` (or ``from`` and ``to``), each the ``id`` of a node or its place in the list, from 0. A
-node has coordinates: ``x`` and ``y``, ``lon`` and ``lat``, or ``pos`` or ``position``, which is a
-list of two numbers or holds x and y. An edge may have its course, ``geometry``, as in GraphML, or
-as a LineString of GeoJSON. y and the second number point north.
+Nodes stand under ``nodes``, and edges under ``links`` or ``edges``. An edge has ``source`` and
+``target`` (or ``from`` and ``to``), each of which is the ``id`` of a node or its position in the
+list, from 0. A node has coordinates: ``x`` and ``y``, ``lon`` and ``lat``, or ``pos`` or
+``position``, which is a list of two numbers or has x and y. An edge may have its course,
+``geometry``, as in GraphML, or as a LineString of GeoJSON. y and the second number point north.
 """
 
 import json
@@ -35,7 +35,7 @@ ENDS = (("source", "target"), ("from", "to"))
 
 
 def fits(name: str, content: bytes) -> bool:
-    """Whether a file is JSON with nodes and edges in it."""
+    """Tell whether a file is JSON with nodes and edges in it."""
     if not looks_like_json(content):
         return False
     told = json_of(content)
@@ -45,7 +45,11 @@ def fits(name: str, content: bytes) -> bool:
 
 
 def read(file: str, content: bytes, reading: Reading) -> Plan:
-    """The plan of a graph in node-link JSON. Raises InputError on bad input."""
+    """Read the plan of a graph in node-link JSON.
+
+    Raises:
+        InputError: The file has a fault.
+    """
     told = demand_json(file, content)
     formats.demand(file, told)
     nodes, edges = told["nodes"], told["links" if "links" in told else "edges"]
@@ -84,7 +88,7 @@ def read(file: str, content: bytes, reading: Reading) -> Plan:
 
 
 def _course(edge: Mapping[str, Any]) -> dict[str, Any]:
-    """What is told of an edge, a course of GeoJSON as a list."""
+    """What is told of an edge, with a course of GeoJSON as a list."""
     told = {**edge}
     course = told.get("geometry")
     if isinstance(course, dict):
@@ -113,14 +117,14 @@ def _names(file: str, nodes: Sequence[Mapping[str, Any]]) -> list[str]:
 
 
 def _name(file: str, what: str, told: object) -> str:
-    """A name; the nodes of networkx may also be tuples, which are lists in JSON."""
+    """Read a name; the nodes of networkx may also be tuples, which are lists in JSON."""
     if isinstance(told, list) and told and not any(isinstance(one, list | dict) for one in told):
         return ",".join(name_of(file, what, one) for one in told)
     return name_of(file, what, told)
 
 
 class _Ends:
-    """The ends of edges: by the names of nodes, or if one is no such name, by their numbers."""
+    """The ends of edges, by the names of nodes or, if one is not such a name, by their numbers."""
 
     def __init__(
         self,
@@ -159,7 +163,7 @@ class _Ends:
 
 
 def _point(node: Mapping[str, Any]) -> dict[str, Any]:
-    """The coordinates of a node that stand under another name than x and y, or lon and lat."""
+    """The coordinates of a node that have other names than x and y, or lon and lat."""
     for key in POINTS:
         point = node.get(key)
         if isinstance(point, dict):

@@ -1,11 +1,11 @@
-"""Maps of Trizbort, with which players draw the rooms of a text adventure: XML.
+"""Maps of Trizbort (XML), with which players draw the rooms of a text adventure.
 
-A ``room`` has an ``id``, a ``name``, and a place on the paper, x to the right and y downwards. A
-``line`` has its ``dock``s, by ``index``: the ``id`` of a room, and the ``port`` there, one of
-sixteen directions of the compass. With ``flow="oneWay"`` it can be gone from its first dock to its
-last only. A line may also end at a ``point`` of the paper: it leads nowhere yet, and is left out.
-So are lines that go up, down, in or out, as their labels say, and those without a port, because
-they have no direction.
+A ``room`` has an ``id``, a ``name``, and a position on the paper, x to the right and y downwards. A
+``line`` has its ``dock``s, by ``index``: the ``id`` of a room, and the ``port`` there, which is one
+of sixteen directions of the compass. With ``flow="oneWay"`` it can be gone only from its first dock
+to its last. A line may also end at a ``point`` of the paper: it leads nowhere yet, and is left out.
+Lines that go up, down, in or out, as their labels say, and those without a port, are left out, too,
+because they have no direction.
 """
 
 from collections.abc import Iterable
@@ -38,18 +38,22 @@ PORTS = [
     "nw",
     "nnw",
 ]  # clockwise
-NO_DIRECTION = {"up", "down", "in", "out", "u", "d"}  # what labels say
-NAMED = 10  # lines that a warning names
+NO_DIRECTION = {"up", "down", "in", "out", "u", "d"}  # labels of lines
+NAMED = 10  # the largest number of lines in a warning
 
 
 def fits(name: str, content: bytes) -> bool:
-    """Whether a file is a map of Trizbort."""
+    """Tell whether a file is a map of Trizbort."""
     begin = content[:4000].lower()
     return begin.removeprefix(b"\xef\xbb\xbf").lstrip()[:1] == b"<" and b"<trizbort" in begin
 
 
 def read(file: str, content: bytes, reading: Reading) -> Plan:
-    """The plan in a map of Trizbort. Raises InputError on bad input."""
+    """Read the plan in a map of Trizbort.
+
+    Raises:
+        InputError: The file has a fault.
+    """
     root = _root(file, content)
     found = root.find("map")
     rooms: dict[str, Element] = {}
@@ -162,7 +166,11 @@ def _centre(file: str, name: str, room: Element) -> Point:
 
 
 def _demand_apart(file: str, ways: Iterable[Way]) -> None:
-    """Raises InputError if two lines end at one port of a room."""
+    """Check that no two lines end at one port of a room.
+
+    Raises:
+        InputError: Two do.
+    """
     taken: dict[Exit, Place] = {}
     for way in ways:
         for end, other in (way.ends, way.ends[::-1]):
