@@ -165,14 +165,18 @@ def add_start(add: Any, facing: str) -> None:
 
 def add_senses(add: Any) -> None:
     """Add the options that tell what is measured besides views."""
-    add("--compass", action="store_true", help="note the compass slot of the gateway stood at")
+    add(
+        "--compass",
+        action="store_true",
+        help="note the compass slot of the gateway where the agent stands",
+    )
     add(
         "--odometry",
         type=number(float, 0, 1000),
         metavar="PERCENT",
-        help="note how far each step led, with errors of at most so many percent of the way, drawn "
-        "with --seed; the truth is consistent with that --drift, rounded up to a whole number "
-        "(default: not noted)",
+        help="note how far each step led, with errors of at most PERCENT percent of the way, "
+        "drawn with --seed; the true map is consistent with a --drift of this number, "
+        "rounded up (default: not noted)",
     )
     add("--lengths", action="store_true", help="note how long each step was")
 
@@ -185,7 +189,7 @@ def add_environments(command: Parser, common: Parser, rest: str) -> Any:
         ("grid", "a grid of places, four slots, slot 0 north"),
         ("cylinder", "a grid whose rows are rings"),
         ("torus", "a grid whose rows and columns are rings"),
-        ("crescents", "a grid each two columns of which are joined by a way round their ends"),
+        ("crescents", "a grid in which each two columns are joined by a way round their ends"),
         ("maze", "a grid from which ways are taken away at random; it stays connected"),
         ("hexagons", "the corners of a sheet of hexagons, six slots"),
         ("triangles", "a triangular lattice, six slots"),
@@ -219,29 +223,30 @@ def _add_file(command: Parser) -> None:
         "--slots",
         type=number_or_auto(int, 2),
         metavar="K",
-        help="directions at a place, even; auto: the fewest at which no two exits of a place share "
-        "one (default: auto)",
+        help="number of directions at a place, which must be even; auto: the smallest number at "
+        "which no two exits of a place share a slot (default: auto)",
     )
     add(
         "--north",
         type=number_or_auto(float, -LARGEST),
         metavar="DEGREES",
-        help="bearing of slot 0, clockwise of north; auto: the one that may be off the most before "
-        "two exits of a place share a slot (default: auto)",
+        help="bearing of slot 0, clockwise of north; auto: the bearing that may be off the most "
+        "before two exits of a place share a slot (default: auto)",
     )
     add(
         "--straight",
         type=number(float, 0, 180),
         metavar="DEGREES",
-        help="two exits of a place are on one path if each is the one most nearly opposite to the "
-        "other, and they are off by at most so many degrees (default: those in opposite slots)",
+        help="two exits of a place are on one path if each is the one most nearly opposite to "
+        "the other, and if they are off from being opposite by at most DEGREES degrees "
+        "(default: exits in opposite slots are on one path)",
     )
     add(
         "--along",
         type=number(float, 0),
         default=10.0,
         metavar="METRES",
-        help="the direction of a bent way at its end is that of the point so far along it, in "
+        help="the direction of a bent way at its end is that of the point METRES along it, in "
         "metres or in the units of the file (default: %(default)g)",
     )
     units = command.add_mutually_exclusive_group()
@@ -262,8 +267,8 @@ def _add_file(command: Parser) -> None:
         "--radius",
         type=number(float, 0),
         metavar="METRES",
-        help="in a floor plan, junctions that are at most so far apart are one place (default: as "
-        "far as the free space around them reaches)",
+        help="in a floor plan, junctions that are at most METRES apart are one place (default: "
+        "as far as the free space around them reaches)",
     )
 
 
@@ -327,7 +332,7 @@ def add_tolerance(command: Parser) -> None:
         "--tolerance",
         type=number(int, 0),
         metavar="N",
-        help="bearings may be wrong by N slots; a place keeps those that were seen first "
+        help="bearings may be wrong by N slots; a place keeps the bearings of its first visit "
         "(default: 0)",
     )
 
@@ -362,9 +367,9 @@ def add_optimal(command: Parser) -> None:
     command.add_argument(
         "--optimal",
         action="store_true",
-        help="closed maps with the fewest exceptions to consistent boundaries, then the fewest "
-        "paths, then the fewest places; if no map is closed, the best so far, in which gateways "
-        "may be pending",
+        help="only the optimal maps: the closed maps with the fewest exceptions to consistent "
+        "boundaries, then the fewest paths, then the fewest places; if no map is closed, "
+        "the maps that are best so far, which may have pending gateways",
     )
 
 
@@ -373,10 +378,11 @@ def add_circumscribe(command: Parser) -> None:
     command.add_argument(
         "--circumscribe",
         action="store_true",
-        help="of the closed maps with consistent boundaries (or of all with these, if there is no "
-        "such map) those to which none is preferred, by set inclusion, as circumscription has it. "
-        "A map is preferred to another one if its paths are some but not all of the other one's, "
-        "or if its paths are the same and its places are some but not all of the other one's",
+        help="only the circumscribed maps: of the closed maps with consistent boundaries (or of "
+        "all maps with consistent boundaries, if none of them is closed), those to which "
+        "no other one is preferred by set inclusion. A map is preferred to another one if "
+        "its paths are a proper subset of the paths of the other one, or if the paths are "
+        "the same and its places are a proper subset of the places of the other one",
     )
 
 
@@ -386,8 +392,9 @@ def add_encoding(command: Parser) -> None:
         "--encoding",
         choices=FORMS,
         default="work",
-        help="which rules clingo gets: those of encodings/, or those of encodings/paper/, which "
-        "state the theory as briefly as they can, and are slow (default: work)",
+        help="which rules clingo gets: work, those of encodings/; or paper, those of "
+        "encodings/paper/, which state the theory as briefly as possible, and are slow "
+        "(default: work)",
     )
 
 
@@ -396,7 +403,7 @@ def add_resume(command: Parser) -> None:
     command.add_argument(
         "--resume",
         action="store_true",
-        help="go on where the last run with this output file was cut short; it left FILE.part",
+        help="go on where the last run with this output file was cut short, which left FILE.part",
     )
 
 
@@ -424,8 +431,9 @@ def add_scene(command: Parser) -> None:
     add(
         "file",
         metavar="INSTANCE|MAPS.json",
-        help="an instance, of which an optimal map is shown, which is closed, or one of the best "
-        "so far, with the options below; or a file of maps, from topomap solve --json",
+        help="an instance, of which an optimal map is shown or, if no map is closed, one of the "
+        "best so far; the options below choose which; or a file of maps, from topomap "
+        "solve --json",
     )
     add(
         "given",
@@ -438,13 +446,15 @@ def add_scene(command: Parser) -> None:
         "--map",
         type=number(int, 1),
         metavar="N",
-        help="take the N-th map; if more than 1000 are optimal, the N-th one found (default: 1)",
+        help="take the N-th map; if more than 1000 maps are optimal, the N-th one that is found "
+        "(default: 1)",
     )
     add(
         "--like",
         metavar="WORLD",
-        help="draw places where they are in this file of a world, as for topomap generate, north "
-        "up; which place is which, the links tell, or landmarks that are names of places there",
+        help="draw the places where they are in this file of a world, as for topomap generate, "
+        "with north up; the links, or landmarks that are names of places in the world, "
+        "tell which place is which",
     )
     add_known(command)
     add_asked(

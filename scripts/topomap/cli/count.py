@@ -38,8 +38,8 @@ def add(group: Any) -> None:
     made.add_argument(
         "--merging",
         action="store_true",
-        help="count by merging hypotheses that have the same future, for what is too much to be "
-        "listed: all maps, the closed ones, and those that are closed and perpendicular",
+        help="count by merging hypotheses that have the same future, if there are too many maps "
+        "to list: all maps, the closed ones, and those that are closed and perpendicular",
     )
     add_crew(made)
     add_resume(made)

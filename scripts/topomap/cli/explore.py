@@ -37,9 +37,9 @@ def add(group: Any) -> None:
         "--among",
         action="append",
         metavar="MAPS",
-        help="the maps that may be the real one: optimal (the best so far, if none is optimal), "
-        "closed, perpendicular (and closed), or a file of maps of this instance; can be given "
-        "several times (default: optimal)",
+        help="the maps that may be the real one: optimal (the best so far, if no map is "
+        "closed), closed, perpendicular (these are closed, too), or a file of maps of this "
+        "instance; can be given several times (default: optimal)",
     )
     add(
         "--marker",

@@ -78,7 +78,7 @@ what is certain: new(T), the place where the agent is after step T was not visit
     add(
         "--keep-going",
         action="store_true",
-        help="report lines with a fault, and go on with the next line (status 0)",
+        help="report lines with a fault, and go on with the next line (the status is then 0)",
     )
     add("--no-wait", dest="wait", action="store_false", help="stop at the end of the file")
     add("--json", action="store_true", help="a line of JSON for each step")

@@ -30,8 +30,8 @@ def add(group: Any) -> None:
         "--order",
         choices=("breadth", "depth", "best"),
         default="breadth",
-        help="breadth: count the whole tree step by step; depth: the same in little memory; best: "
-        "best map first, until a closed map is found (default: %(default)s)",
+        help="breadth: count the whole tree step by step; depth: count it with little memory; "
+        "best: the best map first, until a closed map is found (default: %(default)s)",
     )
     add_query(made, PRUNING)
 

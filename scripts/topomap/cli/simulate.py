@@ -47,7 +47,12 @@ def add(group: Any) -> None:
     common = Parser(add_help=False)
     add = common.add_argument
     add_start(add, "the smallest")
-    add("--seed", type=number(int, 0), metavar="N", help="seed for signs and maze (default: 0)")
+    add(
+        "--seed",
+        type=number(int, 0),
+        metavar="N",
+        help="seed for signs, maze and odometry (default: 0)",
+    )
     add(
         "--steps",
         type=number(int, 0, MOST_STEPS),

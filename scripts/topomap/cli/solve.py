@@ -58,8 +58,8 @@ def add(group: Any) -> None:
         "--by",
         choices=("auto", "clingo", "search"),
         default="auto",
-        help="how to find the maps: clingo, the search in Python, or whichever suits, which is "
-        "decided by how much work there is, never by time (default: %(default)s)",
+        help="how to find the maps: clingo; search, in Python; or auto, whichever has less work "
+        "to do, which is decided by counted work, never by time (default: %(default)s)",
     )
     add_query(made, PARTS)
     add_crew(made, "; not with --optimal, --circumscribe, --minimal or --genus")
@@ -69,7 +69,7 @@ def add(group: Any) -> None:
         "--noise",
         type=number(int, 0),
         metavar="K",
-        help="allow up to K views to be wrong, as few as possible: gateways and landmarks were "
+        help="up to K views, as few as possible, may be wrong: gateways and landmarks were "
         "missed or imagined (default: no view is wrong)",
     )
 

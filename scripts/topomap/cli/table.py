@@ -20,8 +20,8 @@ def add(group: Any) -> None:
         "--jobs",
         type=number(int, 1),
         metavar="N",
-        help="how many columns, or with --beyond processes, at a time (default: one for each "
-        "processor)",
+        help="number of columns, or with --beyond of processes, at a time (default: one for "
+        "each processor)",
     )
     made.add_argument("--json", action="store_true", help="print JSON instead of the table")
     made.add_argument(
@@ -39,8 +39,8 @@ def add(group: Any) -> None:
     made.add_argument(
         "--beyond",
         action="store_true",
-        help="count what the paper does not have instead: 4x4 without a bound, 4x5, 5x4, 5x5; "
-        "takes an hour",
+        help="count instead what lies beyond the paper's table: 4x4 without a bound, 4x5, 5x4, "
+        "5x5; this takes an hour",
     )
     add_resume(made)
 

@@ -7,16 +7,16 @@ solver.
 from collections.abc import Iterable
 
 PARTS = {
-    "planar": "planar: each link joins two gateways of one face",
-    "euler": "planar, by Euler's formula: places - links + faces = 2",
+    "planar": "the map is planar: each new link joins two gateways of one face",
+    "euler": "the map is planar by Euler's formula: places - links + faces = 2",
     "closed": "no gateway is pending",
     "travelled": "every path has two places or more",
-    "boundary": "no place is both left and right of a path, or on it and beside it",
+    "boundary": "no place is both left and right of a path, or both on it and beside it",
     "perpendicular": "two paths meet at most once, and no three make a triangle",
-    "genus": "maps with the least genus",
-    "exceptions": "maps with the fewest exceptions to consistent boundaries",
-    "minimal": "maps with the fewest paths, then the fewest places",
-    "no_path_axiom": "a path may hold a place twice, and may be circular",
+    "genus": "maps with the least genus are preferred",
+    "exceptions": "maps with the fewest exceptions to consistent boundaries are preferred",
+    "minimal": "maps with the fewest paths, then the fewest places, are preferred",
+    "no_path_axiom": "a path may contain a place twice, and may be circular",
 }
 OPTIMIZING = {"genus", "exceptions", "minimal"}
 RELAXING = ("no_path_axiom",)  # parts that take a default away
