@@ -316,9 +316,9 @@ def test_what_nothing_parts_is_listed():
     with pytest.raises(InputError) as error:
         layout("drawn", Plan("drawn", ways))
     assert str(error.value) == (
-        "drawn: up to 360 slots do not part all ways, however they are turned: place p: the ways "
-        "to q0 (90.0 degrees) and q1 (90.0) share slot 90; place p: the ways to q0 (90.0 degrees) "
-        "and q2 (90.0) share slot 90"
+        "drawn: up to 360 slots do not separate all ways, however they are turned: place p: the "
+        "ways to q0 (90.0 degrees) and q1 (90.0) share slot 90; place p: the ways to q0 (90.0 "
+        "degrees) and q2 (90.0) share slot 90"
     )
 
 

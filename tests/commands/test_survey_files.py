@@ -219,7 +219,7 @@ def test_duplicates_that_alone_join_a_passage_are_kept(tmp_path):
         ("*data normal from to tape compass newline", 1, "legs on several lines"),
         ("*data normal from to fromcount tocount compass", 1, "reading fromcount is not read"),
         ("*data normal from to tape", 1, "without: compass"),
-        ("*data normal from to tape tape compass", 1, "there twice"),
+        ("*data normal from to tape tape compass", 1, "occurs twice"),
         ("*data normal from to tape ignoreall compass", 1, "last"),
         ("*frobnicate", 1, r"\*frobnicate is not read"),
         ("*prefix a", 1, r"\*prefix is not read"),

@@ -145,4 +145,4 @@ def _plain(where: str, given: Given) -> Any:
     try:
         return json.loads(json.dumps(given, default=plain))
     except (TypeError, ValueError, RecursionError):
-        raise InputError(f"{where}: not what JSON can hold") from None
+        raise InputError(f"{where}: JSON cannot hold it") from None

@@ -116,7 +116,7 @@ def count(
     watch = begin(experience, timeout)
     if flag("merging", merging):
         if circumscribe or jobs > 1:
-            raise ValueError("merging: not with circumscribe or jobs")
+            raise ValueError("merging cannot be combined with circumscribe or jobs")
         return merged_under(watch, experience, query)
     with crew_of(jobs) as crew:
         return count_under(watch, experience, query, Journal(), crew, circumscribe)

@@ -201,7 +201,7 @@ def explore(
         The walk. Its ``fault`` says why it is not proved to be the best, if so.
 
     Raises:
-        TypeError: ``experience`` is not an Experience, or ``among`` is none of the above.
+        TypeError: ``experience`` is not an Experience, or ``among`` is not one of the above.
         ValueError: A part is not known, a number is out of its range, or ``among`` is empty.
         InputError: The experience is impossible, a file cannot be read, or a map is not one of this
             experience. The message is one line.

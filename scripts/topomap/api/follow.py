@@ -278,7 +278,7 @@ class Follower:
             ValueError: There is no step yet.
         """
         if self._following.solver is None:
-            raise ValueError("no step as yet")
+            raise ValueError("no step yet")
         return FollowerStatus(self._following.answer(watch or Watch(self._timeout)))
 
 

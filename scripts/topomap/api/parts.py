@@ -75,7 +75,7 @@ def query_of(
     if encoding == "paper" and (others := unstated(asked)):
         raise ValueError(f"encoding='paper' does not state {', '.join(others)}")
     if encoding == "paper" and noise is not None:
-        raise ValueError("encoding='paper' does not go with noise")
+        raise ValueError("encoding='paper' cannot be combined with noise")
     return Query(
         asked,
         whole_if_given("bound", bound, 1),

@@ -87,11 +87,11 @@ def solve(
         }
         for name, asked in others.items():
             if asked:
-                raise ValueError(f"circumscribe does not go with {name}")
+                raise ValueError(f"circumscribe cannot be combined with {name}")
     if (flag("optimal", optimal) or circumscribe or query.optimizes) and jobs > 1:
-        raise ValueError("jobs: all maps are shared out, not the best ones")
+        raise ValueError("jobs: the search for all maps can be shared, not that for the best ones")
     if noise is not None and by == "search":
-        raise ValueError("noise does not go with by='search'")
+        raise ValueError("noise cannot be combined with by='search'")
     if by == "search":
         demand_pairs(experience, "by='search'")
     if encoding == "paper":

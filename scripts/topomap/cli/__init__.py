@@ -90,7 +90,7 @@ def _spare_inputs(args: argparse.Namespace) -> None:
     for name in written + truth * (args.command == "generate"):
         for other in inputs + truth * (args.command != "generate"):
             if isinstance(name, str) and isinstance(other, str) and _same(name, other):
-                raise InputError(f"{name}: it is to be read, and cannot be written, too")
+                raise InputError(f"{name}: it is an input, so it cannot be written")
 
 
 def _same(one: str, other: str) -> bool:

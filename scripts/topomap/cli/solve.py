@@ -181,4 +181,4 @@ def _combined(args: argparse.Namespace) -> None:
     for option, others in without.items():
         for other in others:
             if given[option] and asked[other]:
-                raise InputError(f"topomap solve: {option} does not go with {other}")
+                raise InputError(f"topomap solve: {option} cannot be combined with {other}")

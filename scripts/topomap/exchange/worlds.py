@@ -37,7 +37,7 @@ def world_text(environment: Environment, form: str) -> str:
         ValueError: ``form`` is another one.
     """
     if form not in WRITERS:
-        raise ValueError(f"{form!r} is none of {', '.join(WRITERS)}")
+        raise ValueError(f"{form!r} is not one of {', '.join(WRITERS)}")
     labels = [label(place) for place in environment.map.stars]
     if len({*labels}) < len(labels):
         raise InputError(f"{environment.name}: two places have one label")

@@ -312,7 +312,7 @@ class Facts:
                 yield Fault(said, min(told.values()), step)
             rests = any(step in self.rests[kind] for kind in RESTS)
             if told and rests and name == "length":
-                yield Fault("there is a length, but it is no travel", min(told.values()), step)
+                yield Fault("there is a length, but it is not a travel", min(told.values()), step)
             if len(told) > 1:
                 yield Fault(f"more than one {what}", sorted(told.values())[1], step)
         for (slot,), line in self.known["compass"].get(step, {}).items():

@@ -43,7 +43,9 @@ def given_maps(file: str, path: str, whole: Experience, query: Query) -> list[Sc
         for number, (place, entry) in enumerate(document.best, 1):
             where = f"{document.where}: map {place}"
             if entry.get("misread"):
-                raise InputError(f"{where}: it disbelieves what was seen; the page is of all of it")
+                raise InputError(
+                    f"{where}: it contradicts views, but the page is about all that was seen"
+                )
             at = beginning(where, entry["at"], whole, cut, demands)
             rest = path, number, many, document.kind
             rests = cut.starts | cut.looks
@@ -51,7 +53,7 @@ def given_maps(file: str, path: str, whole: Experience, query: Query) -> list[Sc
                 Scene(cut.map_of(at), at, *rest, whole=document.whole, rests=rests, seen=cut)
             )
     if len({scene.at for scene in made}) < len(made):
-        raise InputError(f"{file}: a map is there twice")
+        raise InputError(f"{file}: a map occurs twice")
     if not made:
         raise InputError(f"{file}: no maps of {path} in it")
     return made

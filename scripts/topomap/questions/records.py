@@ -204,7 +204,7 @@ class Record:
             said = "it has a turn, but begins a log" if kind == "start" else "a look has no turn"
             raise LineFault(f"step {step}: {said}")
         if known.length is not None:
-            raise LineFault(f"step {step}: there is a length, but it is no travel")
+            raise LineFault(f"step {step}: there is a length, but it is not a travel")
         if (kind == "start" and known.look) or (kind == "look" and known.start):
             raise LineFault(f"step {step}: it begins a log, and is a second look")
         return record._with_last(**{kind: True})
@@ -222,7 +222,7 @@ class Record:
         if name != "compass" and step == 0:
             raise LineFault(f"step 0: there is a {name}, but step 1 is the first that moves")
         if name == "length" and (known.start or known.look):
-            raise LineFault(f"step {step}: there is a length, but it is no travel")
+            raise LineFault(f"step {step}: there is a length, but it is not a travel")
         if name == "length" and value <= 0:
             raise LineFault(f"step {step}: length {value} is not above 0")
         return record._with_last(**{name: value})
@@ -288,7 +288,7 @@ class Record:
             if known.turn not in (None, turn):
                 raise LineFault(f"step {step}: more than one turn")
             if known.start or known.look:
-                raise LineFault(f"step {step}: it has a turn, and is no travel")
+                raise LineFault(f"step {step}: it has a turn, but is not a travel")
             before = self.done[step - 1] if step == last or self.last is None else self.last
             if turn not in before.view:
                 raise LineFault(f"step {step}: turn {turn}: no gateway there after step {step - 1}")

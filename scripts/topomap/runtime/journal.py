@@ -55,11 +55,13 @@ class Journal:
             if self.path.stat().st_size:
                 self._file.seek(0)
                 if self._file.read(len(HEAD)) != HEAD[: self.path.stat().st_size]:
-                    raise InputError(f"{self.path}: no journal of this program; it is in the way")
+                    raise InputError(
+                        f"{self.path}: it is not a journal of this program, and is in the way"
+                    )
                 if resume:
                     self._read(head.encode())
                 else:
-                    say(f"{output}: begun anew; with --resume it would have gone on")
+                    say(f"{output}: started anew; with --resume the run would have gone on")
             self._file.truncate(self._end)
             if not self._end:
                 self._file.write(head.encode())
@@ -85,7 +87,9 @@ class Journal:
         if not first.endswith(b"\n"):
             return
         if first != head:
-            raise InputError(f"{self.path}: of another run; without --resume it is begun anew")
+            raise InputError(
+                f"{self.path}: it is of another run; without --resume this run starts anew"
+            )
         self._end = self._file.tell()
         self._sum = total = zlib.crc32(first)
         for line in self._file:

@@ -480,7 +480,7 @@ class Tree:
         now = told.steps[step]
 
         def was(earlier: int) -> int:
-            """The gateway of an earlier step."""
+            """The place of the agent after an earlier step."""
             return of.visit.back(earlier).gateway // told.slots
 
         if any(seen != (was(down) == place) for down, seen in told.spotted(step)):

@@ -15,7 +15,7 @@ from topomap.search.hypothesis import Hypothesis, after
 class _Before(NamedTuple):
     """What a step changed, and the ``ran`` steps over known links that followed it.
 
-    It has the gateway of arrival, and what was known before of the places and gateways of which
+    It has the place of arrival, and what was known before of the places and gateways of which
     more is known now.
     """
 

@@ -94,7 +94,7 @@ def layout(file: str, plan: Plan, slots: int | None = None, north: float | None 
     more = f"; and {len(found) - SHOWN} more" if len(found) > SHOWN else ""
     turned = "however they are turned" if north is None else f"with slot 0 at {north:g} degrees"
     upto = f"up to {MOST}" if slots is None else str(slots)
-    raise InputError(f"{file}: {upto} slots do not part all ways, {turned}: {told}{more}")
+    raise InputError(f"{file}: {upto} slots do not separate all ways, {turned}: {told}{more}")
 
 
 def _gaps(exits: list[tuple[float, int, int]]) -> list[tuple[float, float]]:

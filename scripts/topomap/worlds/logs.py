@@ -302,7 +302,7 @@ def _visit(row: Row, frame: str) -> Visit:
     ends = sorted(exits)
     for one, other in zip(ends, [*ends[1:], ends[0] + 360], strict=True):
         if len(exits) > 1 and other - one < 1e-6:
-            raise row.fault(f"exits: {_degrees(one)} stands there twice")
+            raise row.fault(f"exits: {_degrees(one)} occurs twice")
     told = []
     for name in ("taken", "arrived"):
         text = row.one(name)

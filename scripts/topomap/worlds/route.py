@@ -58,7 +58,7 @@ def letters(text: str, slots: int) -> list[int]:
         for direction in [word] if word in names or not word else word:
             if direction not in names:
                 raise InputError(
-                    f"route {shown!r}: step {len(route) + 1}: {direction!r} is none of "
+                    f"route {shown!r}: step {len(route) + 1}: {direction!r} is not one of "
                     + " ".join(names)
                 )
             route.append(names.index(direction))

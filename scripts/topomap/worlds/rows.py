@@ -149,7 +149,7 @@ def _demand_columns(where: str, names: Iterable[str]) -> None:
             hint = meant(name, COLUMNS) or f"known are {', '.join(COLUMNS)}"
             raise InputError(f"{where}: column {quoted(name)} is not known; {hint}")
         if name in seen:
-            raise InputError(f"{where}: column {name} stands there twice")
+            raise InputError(f"{where}: column {name} occurs twice")
         seen.add(name)
     if "exits" not in seen:
         raise InputError(f"{where}: there is no column exits")
@@ -212,4 +212,4 @@ def _texts(where: str, name: str, value: Any) -> list[str]:
             texts = [one if isinstance(one, str) else repr(one) for one in value]
             return [one.strip() for one in texts if one.strip()]
         raise InputError(f"{where}: a list holds texts and numbers only")
-    raise InputError(f"{where}: an object is no value here")
+    raise InputError(f"{where}: an object is not a value here")

@@ -572,7 +572,7 @@ class _Reader:
             if name not in {*READINGS[style], "from", "to", "ignore", "ignoreall"}:
                 raise self.fault(f"*data {style}: the reading {printable(name)[:40]} is not read")
             if name != "ignore" and name in order:
-                raise self.fault(f"*data {style}: the reading {name} is there twice")
+                raise self.fault(f"*data {style}: the reading {name} occurs twice")
             if order[-1:] == ["ignoreall"]:
                 raise self.fault("*data: ignoreall must be the last of the readings")
             order.append(name)

@@ -41,4 +41,4 @@ def read(file: str | Path, reading: Reading) -> Plan:
                 raise InputError(f"{file}: no ways in it")
             return with_names(plan) if reading.landmarks else plan
     known = "; ".join(FORMATS.values())
-    raise InputError(f"{file}: it is none of the formats that are known: {known}")
+    raise InputError(f"{file}: it is not one of the formats that are known: {known}")

@@ -65,7 +65,7 @@ def name_of(file: str, what: str, told: object) -> str:
         InputError: It is neither.
     """
     if not isinstance(told, str | int | float) or isinstance(told, bool):
-        raise InputError(f"{file}: {what}: its name is no text and no number")
+        raise InputError(f"{file}: {what}: its name is neither a text nor a number")
     text = str(told)
     if len(text) > LONGEST:
         raise InputError(f"{file}: {what}: a name of more than {LONGEST} letters")
@@ -106,7 +106,7 @@ def landmarks_of(file: str, what: str, told: object) -> frozenset[str]:
         InputError: They are not such a list.
     """
     if not isinstance(told, list) or not all(isinstance(text, str) for text in told):
-        raise InputError(f"{file}: {what}: its landmarks are no list of texts")
+        raise InputError(f"{file}: {what}: its landmarks are not a list of texts")
     try:
         return frozenset(spelt(text) for text in told)
     except ValueError as error:

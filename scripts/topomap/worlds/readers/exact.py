@@ -63,7 +63,7 @@ def plan_of(file: str, graph: "nx.Graph[Any]") -> Plan:
         except (ValueError, TypeError, KeyError, RecursionError):
             fit = False
         if not fit:
-            raise InputError(f"{file}: {what}: its ends are no two gateways [P,S] of these places")
+            raise InputError(f"{file}: {what}: its ends are not two gateways [P,S] of these places")
         links.append(Link(*ends, _move(file, what, data.get("move"))))
     points, landmarks, called, pending = {}, {}, {}, 0
     linked = {end for link in links for end in link[:2]}
@@ -78,7 +78,7 @@ def plan_of(file: str, graph: "nx.Graph[Any]") -> Plan:
             called[place] = name_of(file, what, data["name"])
         gateways = _list_or_none(data.get("gateways", [])) or []
         if not all(isinstance(slot, int) for slot in gateways):
-            raise InputError(f"{file}: {what}: its gateways are no list of slots")
+            raise InputError(f"{file}: {what}: its gateways are not a list of slots")
         pending += sum((place, slot) not in linked for slot in gateways)
     straight = None
     if "straight" in graph.graph:
@@ -87,7 +87,7 @@ def plan_of(file: str, graph: "nx.Graph[Any]") -> Plan:
                 (places[str(p)], _slot(s), _slot(r)) for p, s, r in _list(graph.graph["straight"])
             ]
         except (ValueError, TypeError, KeyError, RecursionError):
-            raise InputError(f"{file}: straight is no list of places with two slots") from None
+            raise InputError(f"{file}: straight is not a list of places with two slots") from None
         straight = [((place, one), (place, other)) for place, one, other in told]
     return plan(
         file,
@@ -175,7 +175,7 @@ def demand_slots(file: str, told: object) -> int:
     try:
         slots = _slot(told)
     except ValueError:
-        raise InputError(f"{file}: slots is no whole number") from None
+        raise InputError(f"{file}: slots is not a whole number") from None
     if fault := slots_fault(slots):
         raise InputError(f"{file}: {fault}")
     return slots
@@ -184,7 +184,7 @@ def demand_slots(file: str, told: object) -> int:
 def _head(file: str, told: Mapping[str, Any]) -> tuple[int, float]:
     north = number_of(told.get("north", 0))
     if north is None:
-        raise InputError(f"{file}: north is no number of degrees")
+        raise InputError(f"{file}: north is not a number of degrees")
     return demand_slots(file, told["slots"]), north
 
 
@@ -213,5 +213,5 @@ def _move(file: str, what: str, told: object) -> Point | None:
     move = _list_or_none(told)
     numbers = [number_of(number) for number in move] if move is not None else []
     if len(numbers) != 2 or numbers[0] is None or numbers[1] is None:
-        raise InputError(f"{file}: {what}: its move is no two numbers")
+        raise InputError(f"{file}: {what}: its move is not two numbers")
     return numbers[0], numbers[1]

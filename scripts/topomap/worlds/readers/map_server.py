@@ -135,7 +135,7 @@ def _told(file: str, content: bytes) -> Mapping[str, Any]:
         reason = printable(" ".join(str(error).split()))[:200]
         raise InputError(f"{file}: not a YAML file: {reason}") from None
     if not isinstance(told, dict) or not isinstance(node, yaml.MappingNode):
-        raise InputError(f"{file}: no map of map_server: it must have keys and values")
+        raise InputError(f"{file}: not a map of map_server: it must have keys and values")
     keys = [str(key.value) for key, _ in node.value]
     for key in REQUIRED:
         if told.get(key) is None:
@@ -230,7 +230,7 @@ def _beside(file: str, image: str) -> Path:
     if not inside:
         raise InputError(f"{said} is outside of the folder of this file")
     if not regular:
-        raise InputError(f"{said} is not there, or is no file")
+        raise InputError(f"{said} is not there, or is not a file")
     return path
 
 

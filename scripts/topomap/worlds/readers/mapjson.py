@@ -75,7 +75,7 @@ def _plan(file: str, slots: int, entry: Mapping[str, Any], warnings: Sequence[st
         for told in entry["places"]:
             place = _whole(told["place"])
             if place in stars:
-                raise InputError(f"{file}: map 1: place {place} is there twice")
+                raise InputError(f"{file}: map 1: place {place} occurs twice")
             stars[place] = [_whole(slot) for slot in told["gateways"]]
             signs = landmarks_of(file, f"place {place}", told.get("landmarks", []))
             landmarks[place] = signs

@@ -55,7 +55,7 @@ def read(file: str, content: bytes, reading: Reading) -> Plan:
     nodes, edges = told["nodes"], told["links" if "links" in told else "edges"]
     for what, listed in (("nodes", nodes), ("edges", edges)):
         if not isinstance(listed, list) or not all(isinstance(one, dict) for one in listed):
-            raise InputError(f"{file}: its {what} are no list of objects")
+            raise InputError(f"{file}: its {what} are not a list of objects")
     demand_few(file, len(nodes))
     names = _names(file, nodes)
     attributes = told.get("graph")
@@ -111,7 +111,7 @@ def _names(file: str, nodes: Sequence[Mapping[str, Any]]) -> list[str]:
             raise InputError(f"{file}: node {number} of the list, from 0, has no id, others have")
         names.append(_name(file, f"node {number} of the list, from 0", node["id"]))
         if names[-1] in seen:
-            raise InputError(f"{file}: node {shown(names[-1])} is there twice")
+            raise InputError(f"{file}: node {shown(names[-1])} occurs twice")
         seen.add(names[-1])
     return names
 
@@ -158,7 +158,7 @@ class _Ends:
                 made.append(self.names[end])
             else:
                 name = shown(_name(self.file, what, end))
-                raise InputError(f"{self.file}: {what}: {name} is no node")
+                raise InputError(f"{self.file}: {what}: {name} is not a node")
         return made
 
 

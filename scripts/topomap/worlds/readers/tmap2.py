@@ -67,7 +67,7 @@ def read(file: str, content: bytes, reading: Reading) -> Plan:
     meta = told.get("meta") if isinstance(told, dict) else None
     meta = meta if isinstance(meta, dict) else {}
     if not isinstance(listed, list):
-        raise InputError(f"{file}: its nodes are no list")
+        raise InputError(f"{file}: its nodes are not a list")
     demand_few(file, len(listed))
     nodes: dict[str, dict[str, Any]] = {}
     for number, entry in enumerate(listed):
@@ -108,7 +108,7 @@ def _edges(file: str, name: str, node: dict[str, Any]) -> list[tuple[str, str, d
     listed = node.get("edges")
     listed = [] if listed in (None, "", "null", "~") else listed
     if not isinstance(listed, list):
-        raise InputError(f"{file}: node {shown(name)}: its edges are no list")
+        raise InputError(f"{file}: node {shown(name)}: its edges are not a list")
     made = []
     for number, edge in enumerate(listed):
         what = f"edge {number}, from 0, of node {shown(name)}"
@@ -152,7 +152,7 @@ def _told_exactly(
         ends = one, str(about["slot"]), other, str(about["back"])
         back = ends[2:] + ends[:2]
         if ends in gone:
-            raise InputError(f"{file}: edge {shown(called)} of node {shown(one)} is there twice")
+            raise InputError(f"{file}: edge {shown(called)} of node {shown(one)} occurs twice")
         gone[ends] = 1
         if back not in gone:
             move = {"move": about["move"]} if "move" in about else {}
@@ -244,7 +244,7 @@ def _demand_small(file: str, root: yaml.Node) -> None:
                 said = f"more than {MOST_VALUES} values, counting what aliases stand for"
                 raise InputError(f"{file}:{_line(node)}: {said}")
         elif id(node) in open_:
-            raise InputError(f"{file}:{_line(node)}: it holds itself by an alias")
+            raise InputError(f"{file}:{_line(node)}: it contains itself by an alias")
         elif id(node) not in sizes:
             open_.add(id(node))
             waiting.append((node, True))

@@ -60,7 +60,7 @@ def read(file: str, content: bytes, reading: Reading) -> Plan:
     for room in () if found is None else found.iter("room"):
         name = name_of(file, "a room", room.get("id", ""))
         if not name or name in rooms:
-            said = "has no id" if not name else f"{shown(name)}: its id is there twice"
+            said = "has no id" if not name else f"{shown(name)}: its id occurs twice"
             raise InputError(f"{file}: a room {said}")
         rooms[name] = room
     demand_few(file, len(rooms))
@@ -141,7 +141,7 @@ def _ends(file: str, what: str, line: Element) -> list[Element]:
         if end.tag in ("dock", "point"):
             index = number_of(end.get("index", str(number)))
             if index is None:
-                raise InputError(f"{file}: {what}: the index of one of its ends is no number")
+                raise InputError(f"{file}: {what}: the index of one of its ends is not a number")
             ends.append((index, number, end))
     ends.sort(key=lambda one: one[:2])
     return [end for _, _, end in ends[:1] + ends[1:][-1:]]
@@ -149,7 +149,7 @@ def _ends(file: str, what: str, line: Element) -> list[Element]:
 
 def _exit(file: str, what: str, place: Place, port: str) -> Exit:
     if port not in PORTS:
-        raise InputError(f"{file}: {what}: port {shown(port)} is none of {', '.join(PORTS)}")
+        raise InputError(f"{file}: {what}: port {shown(port)} is not one of {', '.join(PORTS)}")
     return Exit(place, 360 * PORTS.index(port) / len(PORTS))
 
 
@@ -161,7 +161,7 @@ def _centre(file: str, name: str, room: Element) -> Point:
     ]
     x, y, w, h = told
     if x is None or y is None or w is None or h is None:
-        raise InputError(f"{file}: room {shown(name)}: its x, y, w and h are no finite numbers")
+        raise InputError(f"{file}: room {shown(name)}: its x, y, w and h are not finite numbers")
     return x + w / 2, -(y + h / 2)
 
 
