@@ -14,6 +14,7 @@
 # make circumscription   compare both readings of the preference, docs/circumscription.md
 #                 (twenty minutes)
 # make beyond     count what is beyond the paper's table, docs/beyond.json (an hour)
+# make man        write the manual pages, build/man/topomap.1 and one for each subcommand
 # make clean      remove what make made
 # make committed  make the committed instances again (MAPS: folder of the real maps)
 
@@ -29,7 +30,7 @@ MAKERS  := $(wildcard scripts/topomap/worlds/*.py scripts/topomap/worlds/readers
 PIP     := $(BIN)/python -m pip --quiet --disable-pip-version-check
 
 .PHONY: all table instances batch test test-long mutate lint figures bench beyond circumscription simulate \
-        knowledge reasons clean \
+        knowledge reasons man clean \
         committed anew
 .DELETE_ON_ERROR:
 
@@ -123,6 +124,9 @@ reasons: $(TOOLS)
 
 simulate: $(SETUP)
 	$(BIN)/topomap simulate list instances/worlds.txt --json --output docs/simulations.json
+
+man: $(SETUP)
+	$(BIN)/python -m topomap.cli.manual build/man
 
 committed: $(SETUP)
 	$(GENERATE) grid 3 3 --route snake -o instances/

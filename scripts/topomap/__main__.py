@@ -1,5 +1,8 @@
-"""Entry point of the command: closed streams, an interrupt while Python still loads, and
-an end that nothing changes any more."""
+"""The entry point of the command.
+
+It handles closed streams, an interrupt while Python is still loading, and an end of the process
+that nothing changes any more.
+"""
 
 import contextlib
 import os
@@ -9,7 +12,7 @@ import sys
 
 def run() -> None:
     """Run the command with the arguments of this process, and end the process."""
-    if sys.argv[1:2] == ["clingo"]:  # which has its own ways with signals and streams
+    if sys.argv[1:2] == ["clingo"]:  # clingo handles signals and streams itself
         from topomap.cli.clingo import run as clingo
 
         signal.signal(signal.SIGINT, signal.SIG_DFL)
@@ -20,7 +23,7 @@ def run() -> None:
         signal.signal(number, _stop)
     _open_streams()
     sys.unraisablehook = _note
-    # For numpy: OpenBLAS would wait without end for memory that is not there. One thread will do.
+    # Without this, OpenBLAS (for numpy) may wait for ever for memory. One thread is enough.
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     from topomap.cli import main
 
@@ -40,15 +43,18 @@ def run() -> None:
 
 
 def _stop(*_: object) -> None:
-    """End at once: an exception in the midst of an import may come out as another one."""
+    """End the process at once, because an exception during an import may become another one."""
     with contextlib.suppress(OSError):
         os.write(2, b"interrupted\n")
     os._exit(130)
 
 
 def _note(ignored: "sys.UnraisableHookArgs") -> None:
-    """Where memory is short, a generator cannot even be closed; the answer says so once. An
-    interrupt that came just where none can be raised comes again, a moment later."""
+    """Handle an exception that Python can only report.
+
+    If memory is short, a generator cannot even be closed; the answer reports that once. An
+    interrupt that came where no exception can be raised is sent again a moment later.
+    """
     if issubclass(ignored.exc_type, KeyboardInterrupt):
         signal.signal(signal.SIGALRM, signal.default_int_handler)
         signal.setitimer(signal.ITIMER_REAL, 0.01)
@@ -57,8 +63,12 @@ def _note(ignored: "sys.UnraisableHookArgs") -> None:
 
 
 def _open_streams() -> None:
-    """A standard stream that was closed is one that cannot be written; names that are no
-    text can be."""
+    """Make the standard streams usable.
+
+    A standard stream that was closed is replaced by one that cannot be written. Characters that the
+    encoding lacks are written as escapes, so that names of files that are not valid text can be
+    printed.
+    """
     for name in ("stdout", "stderr"):
         if getattr(sys, name) is None:
             setattr(sys, name, open(os.open(os.devnull, os.O_RDONLY), "w"))  # noqa: PTH123, SIM115

@@ -215,7 +215,7 @@ def test_the_functions(tmp_path):
     again = topomap.solve(seen, circumscribe=True)  # nothing of the first call is left
     assert len(again) == 2
     for other in ({"optimal": True}, {"minimal": True}, {"noise": 1}, {"encoding": "paper"}):
-        with pytest.raises(ValueError, match="circumscribe does not go with"):
+        with pytest.raises(ValueError, match="circumscribe cannot be combined with"):
             topomap.solve(seen, circumscribe=True, **other)
     with pytest.raises(ValueError, match="jobs"):
         topomap.solve(seen, circumscribe=True, jobs=2)

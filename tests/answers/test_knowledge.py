@@ -287,7 +287,7 @@ def test_who_does_not_ask_the_encodings_refuses_what_is_assumed():
 
 
 def test_a_marker_may_have_any_name():
-    """The marker that has no name is none of those that have one, whatever they are called."""
+    """The marker that has no name is not one of those that have one, whatever they are called."""
     for name in ("()", "unnamed", "none", "named(x)", '"a b"', "0"):
         seen = Experience(4, [[0, 1]] * 5, [1] * 4, drops=[1, (0, name)], markers=[(4, name)])
         found = Truth(seen).final.keys()

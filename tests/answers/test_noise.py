@@ -360,6 +360,6 @@ def test_what_does_not_go_with_noise_is_refused(topomap, tmp_path, option):
     out = tmp_path / "out"
     done = topomap("solve", MISREAD, "--noise", "1", option, "-o", out)
     assert (done.returncode, done.stdout) == (2, "")
-    assert done.stderr.startswith("topomap solve: --noise does not go with --")
+    assert done.stderr.startswith("topomap solve: --noise cannot be combined with --")
     assert done.stderr.count("\n") == 1
     assert not list(tmp_path.iterdir())

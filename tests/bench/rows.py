@@ -41,7 +41,7 @@ class Row:
             value = getattr(self, key)
             for word in [value] if isinstance(value, str) else value:
                 if word and word not in known:
-                    raise ValueError(f"{self.name}: {key}: {word} is none of {', '.join(known)}")
+                    raise ValueError(f"{self.name}: {key}: {word} is not one of {', '.join(known)}")
 
 
 def read(path: Path = ROWS) -> tuple[dict[str, str], list[Row]]:

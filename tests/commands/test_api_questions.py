@@ -320,7 +320,7 @@ def test_steps_are_taken_back(seen):
 
 def test_what_a_follower_refuses_changes_nothing():
     follower = topomap.follow(4)
-    with pytest.raises(ValueError, match="no step as yet"):
+    with pytest.raises(ValueError, match="no step yet"):
         follower.status()
     with pytest.raises(ValueError, match="step 0: there is a turn"):
         follower.step([0, 1], 1)

@@ -323,7 +323,7 @@ def test_bad_usage_is_one_line(inside, arguments):
     ("words", "said"),
     [
         (["sovle", GRID], "topomap: no such command: 'sovle' (did you mean solve? see"),
-        (["solve", GRID, "--optimall"], "topomap solve: unrecognized arguments: --optimall (see"),
+        (["solve", GRID, "--optimall"], "topomap solve: unrecognized arguments: --optimall (did"),
     ],
 )
 def test_bad_usage_says_what_may_be_meant(inside, words, said):
@@ -348,7 +348,7 @@ def test_an_input_is_not_overwritten(inside, tmp_path):
     ):
         done = inside(*call)
         assert (done.returncode, done.stdout, done.stderr.count("\n")) == (2, "", 1), call
-        assert done.stderr.endswith(": it is to be read, and cannot be written, too\n")
+        assert done.stderr.endswith(": it is an input, so it cannot be written\n")
         assert log.read_text() == text
 
 

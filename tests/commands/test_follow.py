@@ -245,12 +245,15 @@ BAD = [
     ('{"turn": 0, "view": [0], "length": 0}', "step 2: length 0 is not above 0"),
     ('{"turn": 0, "view": [0], "apart": [2]}', "step 2: it is told to be of another place"),
     ('{"turn": 0, "view": [0], "same": [3]}', "same: step 3 is later than step 2"),
-    ('{"look": true, "view": [0], "length": 5}', "step 2: there is a length, but it is no travel"),
+    (
+        '{"look": true, "view": [0], "length": 5}',
+        "step 2: there is a length, but it is not a travel",
+    ),
     ('{"look": true, "start": true, "view": [0]}', "step 2: it begins a log, and is a second look"),
     ('{"turn": 0, "view": [0], "drop": [7]}', "drop: true or false is wanted, or the names of"),
     ('{"turn": 0, "view": [0], "drop": "a)."}', "drop: "),
     ('{"turn": 0, "view": [0], "pick": "a"}', "the marker a is taken up, but lies nowhere"),
-    ("start(2). view(2,0). turn(2,0).", "step 2: it has a turn, and is no travel"),
+    ("start(2). view(2,0). turn(2,0).", "step 2: it has a turn, but is not a travel"),
     ('{"undo": 5}', "undo of 5 steps: to take back: 1 step"),
     ("\0", "not text"),
 ]

@@ -398,10 +398,10 @@ def test_what_the_coordinates_are_is_told_by_the_crs(tmp_path, crs, scale, degre
 
 
 def test_coordinates_that_cannot_be_what_they_are_taken_for(tmp_path):
-    with pytest.raises(InputError, match=r"no longitude and latitude \(--plane\)"):
+    with pytest.raises(InputError, match=r"not longitude and latitude \(--plane\)"):
         load(write(tmp_path, square(scale=1000, crs="EPSG:4326")))
     (said,) = load(write(tmp_path, square(scale=0.1, crs="EPSG:9999"))).warnings
-    assert "crs epsg:9999 is not known, and taken to be of a plane (--degrees)" in said.lower()
+    assert "crs epsg:9999 is not known, and is taken to be of a plane (--degrees)" in said.lower()
 
 
 def test_ten_thousand_places_come_to_an_end(tmp_path):
@@ -427,9 +427,9 @@ def test_what_nothing_parts_is_listed():
     with pytest.raises(InputError) as error:
         layout("drawn", Plan("drawn", ways))
     assert str(error.value) == (
-        "drawn: up to 360 slots do not part all ways, however they are turned: place p: the ways "
-        "to q0 (90.0 degrees) and q1 (90.0) share slot 90; place p: the ways to q0 (90.0 degrees) "
-        "and q2 (90.0) share slot 90"
+        "drawn: up to 360 slots do not separate all ways, however they are turned: place p: the "
+        "ways to q0 (90.0 degrees) and q1 (90.0) share slot 90; place p: the ways to q0 (90.0 "
+        "degrees) and q2 (90.0) share slot 90"
     )
 
 

@@ -461,7 +461,7 @@ def of_input(facts):
 
 
 def of_validate(file):
-    """The faults, as input.lp would show them, in the words of SAME; None where one is none of
+    """The faults, as input.lp would show them, in the words of SAME; None where one is not one of
     its errors."""
     shown = set()
     for fault in file["faults"]:

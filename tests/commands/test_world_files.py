@@ -221,30 +221,30 @@ def test_directed_edges_without_an_opposite_one_are_one_way(tmp_path):
 
 NODES = '{"nodes": [{"id": 1, "x": 0, "y": 0}, {"id": 2, "x": 1, "y": 0}], "links": [%s]}'
 HOSTILE_JSON = {
-    NODES % '{"source": 1, "target": 5}': "edge 0, from 0: 5 is no node",
+    NODES % '{"source": 1, "target": 5}': "edge 0, from 0: 5 is not a node",
     NODES % '{"source": 1}': "edge 0, from 0: it has no source and target",
-    NODES % '{"source": {"a": 1}, "target": 2}': "edge 0, from 0: its name is no text",
-    NODES % '{"source": true, "target": 2}': "its name is no text and no number",
+    NODES % '{"source": {"a": 1}, "target": 2}': "edge 0, from 0: its name is neither a text",
+    NODES % '{"source": true, "target": 2}': "its name is neither a text nor a number",
     NODES % '{"source": 1, "target": 2, "geometry": [[0,0],[1%s,0]]}' % ("0" * 400): "its geometry",
     NODES % '{"source": 1, "target": 2, "geometry": {"coordinates": "x"}}': "its geometry is no",
-    NODES % "1": "its edges are no list of objects",
+    NODES % "1": "its edges are not a list of objects",
     NODES.replace('"x": 1', '"x": 1e999') % '{"source": 1, "target": 2}': "place 2 has no coord",
     NODES.replace('"x": 1', '"x": NaN') % '{"source": 1, "target": 2}': "place 2 has no coord",
     NODES.replace('"x": 1', f'"x": 1{"0" * 400}') % '{"source": 1, "target": 2}': "place 2 has no",
     NODES.replace('"x": 1', f'"x": 1{"0" * 9000}') % "": "a number that is too long",
-    NODES.replace('"id": 2', '"id": 1') % "": "node 1 is there twice",
+    NODES.replace('"id": 2', '"id": 1') % "": "node 1 occurs twice",
     NODES.replace('"id": 2', '"ident": 1') % "": "node 1 of the list, from 0, has no id",
     NODES.replace('"id": 2', '"id": "\\ud800"') % "": "a name with a sign that is no letter",
     NODES.replace('"id": 2', '"id": "\\u0000"') % "": "a name with a sign that is no letter",
     NODES.replace('"id": 2', f'"id": "{"x" * 2000}"') % "": "more than 1000 letters",
     '{"format": 2, ' + (NODES % "")[1:]: "format 2 is not known",
-    '{"nodes": 3, "links": []}': "its nodes are no list of objects",
+    '{"nodes": 3, "links": []}': "its nodes are not a list of objects",
     '{"nodes": [], "edges": []}': "no ways in it",
     '{"nodes":\n[{"id": 1}], "links": [': ":2: not a whole JSON text",
     f'{{"nodes": {"[" * 10**5}1{"]" * 10**5}, "links": []}}': "nested too deep",
     '{"graph": {"slots": 5}, "nodes": [], "links": []}': "slots(5): K must be even",
-    '{"graph": {"slots": "x"}, "nodes": [], "links": []}': "slots is no whole number",
-    '{"graph": {"slots": 4, "north": []}, "nodes": [], "links": []}': "north is no number",
+    '{"graph": {"slots": "x"}, "nodes": [], "links": []}': "slots is not a whole number",
+    '{"graph": {"slots": 4, "north": []}, "nodes": [], "links": []}': "north is not a number",
     '{"maps": [': ":1: not a whole JSON text",
     '{"maps": []}': "no maps in it",
     '{"maps": [{"at": [[0,0,0]]}]}': "slots, places and links are wanted",
@@ -275,16 +275,16 @@ def exact(**change):
 @pytest.mark.parametrize(
     ("change", "said"),
     [
-        ({"edge": {"ends": [["a", 0], ["a", 1]]}}, "its ends are no two gateways"),
+        ({"edge": {"ends": [["a", 0], ["a", 1]]}}, "its ends are not two gateways"),
         ({"edge": {"ends": [["a", 0], ["b", 4]]}}, "place b: slot 4 is not in 0..3"),
-        ({"edge": {"ends": [["a", 0.5], ["b", 0]]}}, "its ends are no two gateways"),
-        ({"edge": {"ends": "[" * 10**5}}, "its ends are no two gateways"),
-        ({"edge": {"move": [1, 10**400]}}, "its move is no two numbers"),
+        ({"edge": {"ends": [["a", 0.5], ["b", 0]]}}, "its ends are not two gateways"),
+        ({"edge": {"ends": "[" * 10**5}}, "its ends are not two gateways"),
+        ({"edge": {"move": [1, 10**400]}}, "its move is not two numbers"),
         ({"node": {"landmarks": ["f(X)"]}}, "place a: landmark 'f(X)' is not a ground term"),
-        ({"node": {"landmarks": "x"}}, "its landmarks are no list"),
-        ({"node": {"gateways": [0, "x"]}}, "its gateways are no list of slots"),
+        ({"node": {"landmarks": "x"}}, "its landmarks are not a list"),
+        ({"node": {"gateways": [0, "x"]}}, "its gateways are not a list of slots"),
         ({"graph": {"straight": [["a", 0, 1]]}}, "straight: gateway 1 has no link"),
-        ({"graph": {"straight": 5}}, "straight is no list"),
+        ({"graph": {"straight": 5}}, "straight is not a list"),
     ],
 )
 def test_exact_graphs_are_checked(tmp_path, change, said):
@@ -374,7 +374,7 @@ MERGES = "a0: &a0 {x: 1}\n" + "".join(
 HOSTILE_YAML = {
     f"{HEAD}{BOMB}": "counting what aliases stand for",
     f"{HEAD}{MERGES}": "counting what aliases stand for",
-    f"{HEAD}b: &b [*b]": ":3: it holds itself by an alias",
+    f"{HEAD}b: &b [*b]": ":3: it contains itself by an alias",
     f"{HEAD}b: !!python/object/apply:os.system ['mkdir made']": ":3: the tag tag:yaml.org,2002:pyt",
     f"{HEAD}b: !!int 3": ":3: the tag",
     f"{HEAD}b: {'[' * 60}{']' * 60}": ":3: nested deeper than 50",
@@ -386,9 +386,9 @@ HOSTILE_YAML = {
     f"{HEAD}--- {{}}": "not YAML: but found another document",
     HEAD: "no ways in it",
     HEAD.replace("[]", "[{node: b}]"): "edge 0 of node a: no node b",
-    HEAD.replace("[]", "5"): "node a: its edges are no list",
+    HEAD.replace("[]", "5"): "node a: its edges are not a list",
     HEAD.replace("[]", "[5]"): "edge 0, from 0, of node a: it does not tell its node",
-    HEAD.replace("[]", "[{node: [x]}]"): "its name is no text and no number",
+    HEAD.replace("[]", "[{node: [x]}]"): "its name is neither a text nor a number",
     HEAD.replace("name", "nom"): "node 0 of the list, from 0, has no name",
     HEAD + HEAD[7:]: "two nodes are called a",
     f"{TO_B}- node: {{name: b, edges: [], pose: 4}}": "place b has no coordinates",
@@ -470,8 +470,8 @@ def test_trizbort_labels_that_lead_up_or_down_are_no_directions(tmp_path):
     ("content", "said"),
     [
         (b"  \n", "it is empty"),
-        (b"\x89PNG\r\n", "of a floor plan give the YAML file that names it"),
-        (b"P5 2 2 255\n", "of a floor plan give the YAML file that names it"),
+        (b"\x89PNG\r\n", "for a floor plan, give the YAML file that names it"),
+        (b"P5 2 2 255\n", "for a floor plan, give the YAML file that names it"),
         (b"image: a.pgm\nfree_thresh: 0.2\n", "resolution is not given"),
     ],
 )
@@ -509,12 +509,12 @@ HOSTILE_XML = {
         "<trizbort>", '<!DOCTYPE x SYSTEM "file:///etc/passwd"><trizbort>'
     ): "document type or entities",
     trizbort(line())[:-20]: ":1: not whole XML",
-    trizbort(line("north")): "line 3: port north is none of n, nne",
+    trizbort(line("north")): "line 3: port north is not one of n, nne",
     trizbort(line() + line(other="e")): "room a: two lines end at its port e, to b and b",
-    trizbort('<room id="1" x="0" y="0"/>'): "a room 1: its id is there twice",
+    trizbort('<room id="1" x="0" y="0"/>'): "a room 1: its id occurs twice",
     trizbort('<room x="0" y="0"/>'): "a room has no id",
-    trizbort('<room id="4" x="1e99" y="0"/>'): "room 4: its x, y, w and h are no finite numbers",
-    trizbort('<room id="4" x="0"/>'): "room 4: its x, y, w and h are no finite numbers",
+    trizbort('<room id="4" x="1e99" y="0"/>'): "room 4: its x, y, w and h are not finite numbers",
+    trizbort('<room id="4" x="0"/>'): "room 4: its x, y, w and h are not finite numbers",
     trizbort(line("")): "no ways in it",
     trizbort(line(more='startText=" Up "')): "no ways in it",
     trizbort(line().replace('id="2"', 'id="9"')): "no ways in it",
@@ -634,7 +634,7 @@ def test_what_cannot_be_written_is_refused():
         world_text(replace(odd, names={place: "a\x01"}), "graphml")
     with pytest.raises(InputError, match="it is not told where place"):
         world_text(replace(odd, moves={}), "tmap2")
-    with pytest.raises(ValueError, match="'dot' is none of graphml, json, tmap2"):
+    with pytest.raises(ValueError, match="'dot' is not one of graphml, json, tmap2"):
         world_text(odd, "dot")
 
 

@@ -65,7 +65,7 @@ class Read:
         for y, row in enumerate(rows):
             for found in PLACE.finditer(row):
                 name = int(found[0].strip("[]"))
-                assert name not in self.places, f"{name} is there twice"
+                assert name not in self.places, f"{name} occurs twice"
                 self.places[name] = [(y, x) for x in range(*found.span())]
                 self.owner |= dict.fromkeys(self.places[name], name)
                 if found[0][0] == "[":

@@ -1,5 +1,5 @@
 """Where places are drawn, if it is known where they are: by a compass, lengths or odometry, or as
-in a file of a world. And no line passes under a place that is none of its ends."""
+in a file of a world. And no line passes under a place that is not one of its ends."""
 
 import math
 import random

@@ -45,7 +45,7 @@ KINDS = {  # what topomap.model.experience says, and the error that says the sam
     r"step 0: there is a shift, .*": "0,shift_at_start",
     r"step 0: there is a length, .*": "0,length_at_start",
     r"step (?P<T>\d+): length (?P<D>-?\d+) is not above 0": r"{T},no_length\({D}\)",
-    r"step (?P<T>\d+): there is a length, but it is no travel": r"{T},no_way\(.*\)",
+    r"step (?P<T>\d+): there is a length, but it is not a travel": r"{T},no_way\(.*\)",
     r"step (?P<T>\d+): the shifts up to here .*": "{T},far",
     r"step (?P<T>\d+): length \d+ is above .*": "{T},long",
     r"step (?P<T>\d+): it is told to be of another place than itself": "{T},apart_from_itself",

@@ -1,8 +1,9 @@
-"""The public functions and classes: what "import topomap" gives, and here the classes of what these
-functions reply, to annotate with. Each is loaded when it is first used.
+"""The public functions, and the classes of their replies for annotations.
 
-The commands use the functions named ``..._under``: these do the same work under the ``Watch`` of
-a command, which shows progress and heeds signals.
+"import topomap" gives the functions. Each name is loaded when it is first used.
+
+The commands use the functions named ``..._under``. These do the same work as the public functions,
+under the ``Watch`` of a command, which shows progress and heeds signals.
 """
 
 from typing import TYPE_CHECKING

@@ -18,13 +18,16 @@ from topomap.runtime.watch import Attempt, Stopped, Watch
 from topomap.solver.defaults import in_the_way
 from topomap.solver.enumeration import proved_or_last
 
-CLOSED = "closed"  # why an answer is partial that was not wanted any more
+CLOSED = "closed"  # why an answer is partial that the caller has closed
 UNFINISHED = "not finished"
 
 
 class _Known:
-    """What is known by now. It is apart from the answer, so that the search does not hold the
-    answer, and ends when nobody does any more."""
+    """What is known of an answer by now.
+
+    It is apart from the answer, so that the search does not hold a reference to the answer, and
+    ends when nobody else holds one.
+    """
 
     def __init__(self, experience: Experience, query: Query):
         self._experience, self._noisy = experience, query.noise is not None
@@ -36,7 +39,7 @@ class _Known:
         self.fault: str | None = UNFINISHED
 
     def add(self, found: Found) -> Map:
-        """One more map; how many there will be is not known."""
+        """Note one more map; how many there will be is not known."""
         self.count += 1
         self.last = found
         made = Map(self._experience, found, self.count, 0, noisy=self._noisy)
@@ -46,12 +49,12 @@ class _Known:
 
 
 class Answer(Sequence[Map]):
-    """The maps that were asked for, as they are found.
+    """The maps that were asked for, which can be read while further maps are being found.
 
-    To iterate over it goes on while they come; its length, ``complete``, ``kind``, ``cost`` and
-    ``fault`` wait for the last one. Maps are kept, so that it can be gone through again, also by
-    several threads. The search begins with the first map that is asked for; it ends with the
-    answer, by ``close``, or at the end of a ``with`` statement.
+    A loop over the answer goes on while maps are found. Its length, ``complete``, ``kind``,
+    ``cost`` and ``fault`` wait for the last map. The maps are kept, so that the answer can be read
+    again, also by several threads. The search begins with the first map that is asked for. It ends
+    when the answer is no longer in use, at ``close``, or at the end of a ``with`` statement.
     """
 
     def __init__(
@@ -64,9 +67,18 @@ class Answer(Sequence[Map]):
         waits: bool = True,
         optimal: bool = False,
     ):
-        """The maps that are ``coming``, at most ``limit`` of them, found under a ``watch``. Its
-        time limit ``waits`` while the caller has control; that of a command does not. They are
-        the ``optimal`` ones, or all."""
+        """Make an answer of a search, which has not begun.
+
+        Parameters:
+            experience: What the agent saw and did.
+            query: What is asked of the maps.
+            coming: The maps as the search finds them.
+            limit: The number of maps after which the search stops.
+            watch: The watch under which the maps are found.
+            waits: Whether the time limit of the watch stops while the caller has control. That of a
+                command does not.
+            optimal: Whether the optimal maps were asked for, and not all.
+        """
         self.experience, self.query, self._optimal = experience, query, optimal
         self._watch = watch or Watch()
         self._known = _Known(experience, query)
@@ -74,10 +86,17 @@ class Answer(Sequence[Map]):
         self._one_at_a_time = threading.RLock()
 
     def stream(self) -> Iterator[Map]:
-        """The maps, each as it is found, for more of them than memory holds: they are not kept.
+        """Give each map as it is found, without keeping it, where all maps need too much memory.
+
         From then on the answer has no length and no maps of its own, and ``complete``, ``kind``,
-        ``cost`` and ``fault`` say what is known by now. Raises ValueError if maps were asked for
-        before."""
+        ``cost`` and ``fault`` say what is known at that time.
+
+        Returns:
+            An iterator over the maps.
+
+        Raises:
+            ValueError: Maps were asked for before.
+        """
         if self._known.begun or not self._known.keeps:
             raise ValueError("a stream begins before maps are asked for")
         self._known.keeps = False
@@ -93,8 +112,10 @@ class Answer(Sequence[Map]):
             return next(self._search, None)
 
     def close(self) -> None:
-        """End the search, also when another thread waits for it. The maps that were found until
-        then are kept; ``fault`` says "closed" if there may be others."""
+        """End the search, even if another thread is waiting for it.
+
+        The maps that were found until then are kept. If there may be others, ``fault`` is "closed".
+        """
         self._watch.ended = CLOSED
         with self._one_at_a_time:
             self._search.close()
@@ -108,7 +129,7 @@ class Answer(Sequence[Map]):
         self.close()
 
     def _at(self, place: int) -> Map | None:
-        """The map at a place, from 0, as soon as it is found; None if there are not as many."""
+        """Find the map at a position, counted from 0; None if there are not as many."""
         known = self._known
         if not known.keeps:
             raise ValueError("the maps go to a stream, and are not kept")
@@ -134,7 +155,7 @@ class Answer(Sequence[Map]):
     @overload
     def __getitem__(self, index: slice) -> list[Map]: ...
     def __getitem__(self, index: SupportsIndex | slice) -> Map | list[Map]:
-        """A map, or those of a slice. Where the first ones are enough, no others are looked for."""
+        """Find a map, or those of a slice; no map is looked for that these do not need."""
         if isinstance(index, slice):
             enough = _enough(index)
             return (self._all() if enough is None else [*islice(self, enough)])[index]
@@ -146,7 +167,7 @@ class Answer(Sequence[Map]):
         return len(self._all())
 
     def __bool__(self) -> bool:
-        """Whether there is a map; none but the first is looked for."""
+        """Whether there is a map; only the first map is looked for."""
         return self._at(0) is not None
 
     def _settled(self) -> _Known:
@@ -156,20 +177,25 @@ class Answer(Sequence[Map]):
 
     @property
     def fault(self) -> str | None:
-        """Why these may not be all the maps that were asked for, or None if they are all:
-        "limit", "timeout", "out of memory", "closed", "interrupted", or the text of an error."""
+        """Why these may not be all the maps that were asked for; None if they are all.
+
+        It is "limit", "timeout", "out of memory", "closed", "interrupted", or the text of an error.
+        """
         return self._settled().fault
 
     @property
     def complete(self) -> bool:
-        """Whether it is proved that there are no others."""
+        """Whether it is proved that there are no other maps."""
         return self.fault is None
 
     @property
     def kind(self) -> str:
-        """What the maps are: consistent, best, optimal, best so far, circumscribed, circumscribed
-        so far; or not proved to be best.
-        "no map" if it is proved that there is none, "not settled" if none was found as yet."""
+        """What the maps are.
+
+        They are "consistent", "best", "optimal", "best so far", "circumscribed", "circumscribed so
+        far", or "not proved to be best". It is "no map" if it is proved that there is none, and
+        "not settled" if none was found before the search was cut short.
+        """
         known = self._settled()
         if known.last is None:
             return "no map" if known.fault is None else "not settled"
@@ -177,39 +203,53 @@ class Answer(Sequence[Map]):
 
     @property
     def proved(self) -> bool:
-        """Whether no map is better, if something was minimised."""
+        """Whether it is proved that no map is better, if something was minimised."""
         known = self._settled()
         return known.fault is None if known.last is None else known.last.proved
 
     @property
     def cost(self) -> tuple[int, ...]:
-        """What was minimised, most important first; empty if nothing was, or there is no map."""
+        """What was minimised, the most important number first; empty if nothing was.
+
+        It is empty, too, if there is no map.
+        """
         last = self._settled().last
         return () if last is None else last.cost
 
     def in_the_way(self) -> list[str] | None:
-        """Where it is proved that there is no closed map, and closed or optimal ones were asked
-        for: what, if it alone is taken away, lets one through, ``path_axiom``, ``boundary``,
-        ``perpendicular``, ``planar``, ``euler`` or ``bound``. It is found by trying, within a small
-        budget of counted work; what is not named is open. None where the question does not
-        arise. Raises Stopped if a command or its time limit ends that."""
+        """Find out which default or part alone stands in the way of a closed map.
+
+        The question arises if closed or optimal maps were asked for, and it is proved that there is
+        no closed one. The answer is found by trying, within a small budget of counted work; what is
+        not named is open.
+
+        Returns:
+            Those of ``path_axiom``, ``boundary``, ``perpendicular``, ``planar``, ``euler`` and
+            ``bound`` without which there is a closed map; None if the question does not arise.
+
+        Raises:
+            Stopped: A command or its time limit ends the trying.
+        """
         kind = self.kind
         none = kind == "no map" and (self._optimal or "closed" in self.query.parts)
         if self.fault is not None or not (none or kind == "best so far"):
             return None
-        self._watch.ended = None  # the search itself has come to its end
+        self._watch.ended = None  # the search itself has ended
         return in_the_way(self.experience, self.query, self._watch)
 
     @property
     def by(self) -> str | None:
-        """Which way gave the maps: "clingo", or "search"; None as long as none has begun."""
+        """Which way found the maps, "clingo" or "search"; None if neither has begun."""
         self._settled()
         return self._watch.by
 
     @property
     def least(self) -> tuple[int, ...] | None:
-        """What each map costs at least, as far as it is proved, if something was minimised; or
-        None, also where the map that is given is not closed, but may not be the optimal one."""
+        """A proved lower bound on what each map costs, if something was minimised.
+
+        It is None if no bound is proved, and where the map that was found is not closed and may not
+        be optimal.
+        """
         known = self._settled()
         if known.last and known.last.open:
             return None
@@ -217,7 +257,7 @@ class Answer(Sequence[Map]):
         return least or None
 
     def __repr__(self) -> str:
-        """What is known by now; nothing is looked for."""
+        """What is known by now; no map is looked for."""
         known = self._known
         if known.fault == UNFINISHED:
             many = number(known.count, "map", "maps")
@@ -236,8 +276,11 @@ def _search(
     limit: int | None,
     watch: Watch | None,
 ) -> Generator[Map, None, None]:
-    """The maps as they come; what is known of them is noted before each one is handed out. It
-    is complete only if it came to its end by itself."""
+    """Give the maps as they are found.
+
+    What is known of a map is noted before it is given. The answer is complete only if this
+    generator came to its end by itself.
+    """
     known.begun = True
     try:
         with contextlib.closing(coming), Attempt() as attempt:
@@ -260,12 +303,12 @@ def _search(
 
 
 def _at_rest(watch: Watch | None) -> AbstractContextManager[None]:
-    """While the caller has control, the time limit waits."""
+    """Stop the clock of the time limit while the caller has control."""
     return watch.deadline.waiting() if watch else contextlib.nullcontext()
 
 
 def _enough(part: slice) -> int | None:
-    """How many of the first maps have all those of a slice; None if only all have them."""
+    """How many of the first maps contain all those of a slice; None if all maps are needed."""
     ends = [None if end is None else operator.index(end) for end in (part.start, part.stop)]
     if any(end is not None and end < 0 for end in ends):
         return None

@@ -19,10 +19,17 @@ from topomap.runtime.watch import Attempt, Watch
 
 @dataclass(frozen=True)
 class StatementAnswer:
-    """What is known of a ``statement``: whether it ``holds``, in "all" maps, in "some" and not in
-    others, or in "none"; else it is "not settled". ``witness`` is a map in which it holds,
-    ``counter`` one in which it does not; None where none was found. ``note`` says why it holds
-    in none, or in all, where what was seen tells so at once."""
+    """The answer to one statement.
+
+    Attributes:
+        statement: The statement, in one spelling.
+        holds: "all" if the statement holds in all maps (it is a cautious consequence), "some" if it
+            holds in some maps but not in others (it is a brave consequence), "none" if it holds in
+            no map, or "not settled".
+        witness: A map in which the statement holds; None if none was found.
+        counter: A map in which it does not hold; None if none was found.
+        note: Why it holds in no map, or in all, where the views alone show that; otherwise None.
+    """
 
     statement: str
     holds: str
@@ -32,7 +39,7 @@ class StatementAnswer:
 
 
 class StatementAnswers(Reply, Sequence[StatementAnswer]):
-    """An answer to each statement, in their order."""
+    """The answers to several statements, in the order of the statements."""
 
     def __init__(
         self,
@@ -72,25 +79,33 @@ class StatementAnswers(Reply, Sequence[StatementAnswer]):
 
     @property
     def has_maps(self) -> bool | None:
-        """Whether there is a map at all; None if that is not settled. If there is none, each
-        statement is said to hold in none, and so would its opposite be."""
+        """Whether there is any map; None if that is not settled.
+
+        If there is no map, each statement is said to hold in none, and so is its opposite.
+        """
         return self.inquiry.some
 
     @property
     def kind(self) -> str:
-        """Of what maps the answers are: "consistent"; "best", if something is minimised;
-        "optimal", or "best so far" if no map is closed; "not settled" until one is found."""
+        """Which maps the answers are about.
+
+        They are about the "consistent" maps; about the "best" ones, if a part is minimised; about
+        the "optimal" ones, or those that are "best so far" if no map is closed. It is "not settled"
+        until a map is found.
+        """
         return self.inquiry.kind or "not settled"
 
     @property
     def cost(self) -> tuple[int, ...]:
-        """What these maps cost, most important first; empty if nothing is minimised."""
+        """What these maps cost, the most important number first; empty if nothing is minimised."""
         return self.inquiry.cost
 
     def lines(self) -> Iterator[str]:
+        """The answers as the lines that ``topomap ask`` prints."""
         return self.inquiry.lines(self.experience, self.fault)
 
     def document(self) -> dict[str, Any]:
+        """The answers as ``topomap ask --json`` writes them."""
         return self.inquiry.document(self.experience, self.query, self.optimal)
 
     def _gist(self) -> str:
@@ -106,29 +121,32 @@ def ask(
     timeout: float | None = None,
     **parts: Unpack[Parts],
 ) -> StatementAnswers:
-    """Tell of each statement whether it holds in all maps that are consistent with an experience
-    (the paper, sections II and III), in some or in none.
+    """Tell of each statement whether it holds in all consistent maps, in some or in none.
+
+    The maps are those of the paper, sections II and III. A statement that holds in all maps is a
+    cautious consequence of the experience; one that holds in some maps is a brave consequence.
 
     Parameters:
-        experience: what was seen and done.
-        statement: one or more, such as ``same(3,12)``, ``places < 12``, ``not planar``; what can
-            be said is in ``topomap ask --help``.
-        optimal: of the closed maps with the fewest exceptions to consistent boundaries, then the
-            fewest paths, then the fewest places; if no map is closed, of the best so far, pending
-            gateways allowed.
-        bound: the most places that a map may have.
-        horizon: the last step that counts.
-        timeout: seconds after which it stops.
-        parts: what the maps are to have.
+        experience: What the agent saw and did.
+        statement: One statement or more, such as ``same(3,12)``, ``places < 12`` or ``not planar``;
+            ``topomap ask --help`` lists what can be said.
+        optimal: Whether to ask about the optimal maps only. These are the closed maps with the
+            fewest exceptions to consistent boundaries, then the fewest paths, then the fewest
+            places. If no map is closed, the question is about the maps that are best so far, which
+            may have pending gateways.
+        bound: The largest number of places that a map may have.
+        horizon: The last step that counts. By default all steps count.
+        timeout: The number of seconds after which the work stops.
+        parts: The demands on the maps and the preferences among them, as for ``solve``.
 
     Returns:
-        An answer to each statement; what is not settled in time is said to be so.
+        An answer to each statement. A statement that is not settled in time is said to be so.
 
     Raises:
-        TypeError: no experience, or a statement that is no text.
-        ValueError: no statement, an unknown part, or a number that cannot be.
-        InputError: an experience that cannot be, or a text that is no statement about it; one
-            line.
+        TypeError: ``experience`` is not an Experience, or a statement is not a text.
+        ValueError: There is no statement, a part is not known, or a number is out of its range.
+        InputError: The experience is impossible, or a text is not a statement about it. The message
+            is one line.
     """
     query = query_of(parts, bound=bound, horizon=horizon)
     if not statement:
@@ -142,7 +160,7 @@ def ask(
 def ask_under(
     watch: Watch, experience: Experience, asked: Sequence[str], query: Query, optimal: bool
 ) -> StatementAnswers:
-    """The same of the maps of a query, under the watch of a command."""
+    """Settle statements about the maps of a query, under the watch of a command."""
     seen = experience.cut(LARGEST if query.horizon is None else query.horizon)
     inquiry = Inquiry([parse_statement(text, seen, "ask") for text in asked])
     with Attempt() as attempt:

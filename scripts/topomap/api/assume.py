@@ -7,21 +7,25 @@ from topomap.runtime.errors import InputError
 
 
 def assume(experience: Experience, *statement: str) -> Experience:
-    """The same experience, of which statements are taken for granted: only the maps in which they
-    hold are consistent with it. (``same(T,U)`` and ``not same(T,U)`` become part of what is known,
-    as the facts ``same/2`` and ``apart/2`` of an instance file; the others are put to clingo.)
+    """Take statements about an experience for granted.
+
+    Only the maps in which the statements hold are consistent with the experience that is returned.
+    The statements ``same(T,U)`` and ``not same(T,U)`` are added to what is known, like the facts
+    ``same/2`` and ``apart/2`` of an instance file; clingo gets the others as demands. (The paper,
+    section II, has the maps; assumptions are not in it.)
 
     Parameters:
-        experience: what was seen and done.
-        statement: such as ``same(3,12)``, ``places < 12``, ``not planar``; what can be said is in
-            ``topomap ask --help``.
+        experience: What the agent saw and did.
+        statement: The statements, such as ``same(3,12)``, ``places < 12`` or ``not planar``;
+            ``topomap ask --help`` lists what can be said.
 
     Returns:
-        The experience, for ``solve``, ``ask``, ``explain``, ``explore`` and the like.
+        The experience with the assumptions, for ``solve``, ``ask``, ``explain``, ``explore`` and
+        other functions.
 
     Raises:
-        TypeError: no experience, or a statement that is no text.
-        InputError: a text that is no statement about this experience; one line.
+        TypeError: ``experience`` is not an Experience, or a statement is not a text.
+        InputError: A text is not a statement about this experience. The message is one line.
     """
     demand_experience(experience)
     for text in statement:
@@ -30,7 +34,7 @@ def assume(experience: Experience, *statement: str) -> Experience:
 
 
 def assumed(command: str, experience: Experience, statement: "tuple[str, ...]") -> Experience:
-    """The same for a command, which an error names."""
+    """Take statements for granted as ``assume`` does; errors name the command."""
     for text in statement:
         said = parse_statement(text, experience, command)
         name, _, numbers = said.term.rstrip(")").partition("(")

@@ -12,7 +12,7 @@ from topomap.search.branching import BranchingNode
 
 
 class BranchingNodes:
-    """The branching nodes as they come, and then what they come to."""
+    """The branching nodes as they are found, and then their totals."""
 
     def __init__(self, nodes: Iterator[BranchingNode]):
         self._summary = branching.Summary()
@@ -20,7 +20,7 @@ class BranchingNodes:
         self.fault: str | None = None
 
     def __iter__(self) -> Iterator[BranchingNode]:
-        """The nodes that are yet to come; they are not kept."""
+        """Give the nodes that are still to come; they are not kept."""
         with Attempt() as attempt:
             for node in self._coming:
                 self._summary.add(node)
@@ -29,7 +29,7 @@ class BranchingNodes:
 
     @property
     def totals(self) -> dict[str, Any]:
-        """The figures of the nodes that came: in all, and by step."""
+        """The figures of the nodes that came, in all and for each step."""
         return self._summary.totals
 
     @property
@@ -38,14 +38,14 @@ class BranchingNodes:
         return self._summary.holds
 
     def lines(self) -> Iterator[str]:
-        """The figures to read."""
+        """The totals as the lines that ``topomap branching`` prints."""
         yield from branching.totals_text(self.totals).splitlines()
         if self.fault:
             yield f"partial: {self.fault}; the figures are of the nodes met until then"
 
 
 def branching_nodes_under(watch: Watch, experience: Experience, query: Query) -> BranchingNodes:
-    """The branching nodes of the planar maps of a query, under the watch of a command."""
+    """Find the branching nodes of the planar maps of a query, under the watch of a command."""
     if experience.starts:
         raise InputError("branching: equation (1) is of one log, without start(T)")
     node = traversal.root(experience, query.having("planar"))

@@ -32,35 +32,38 @@ def check(
     every: bool = False,
     **parts: Unpack[Parts],
 ) -> Judged:
-    """Judge maps by two checkers that share no rule with the theory (the paper, sections II, III);
-    and whatever is said of a map beside its dstates, as ``topomap check`` does.
+    """Judge maps by two checkers that share no rule with the theory (the paper, sections II, III).
+
+    Whatever is said of a map besides its dstates is judged, too, as ``topomap check`` does.
 
     Parameters:
-        experience: what was seen and done.
-        maps: what is to be judged: a map, as ``solve`` gives it, or a dictionary as ``solve
-            --json`` writes it, with at least the key ``at``, a list of ``[step, place, slot]``;
-            several of these, of which none may be twice; a dictionary with the key ``maps``, a
-            list of such dictionaries, and what is said of them all; the path of a file; or
-            documents that were read.
-        bound: the most places that a map may have.
-        noise: how many views a map may disbelieve.
-        truth: the real map, for maps that say whether they are it (the key ``real``).
-        timeout: seconds after which no further map is begun.
-        every: tell of each map which axioms and defaults it breaks and keeps (``axioms`` of its
-            verdict), and its ``exceptions``. What is not demanded, nor said of the maps, is then
-            nothing wrong, the path axiom included.
-        parts: what the maps are to have; genus, exceptions, minimal and euler are none that one map
-            has. With no_path_axiom they need not keep the path axiom.
+        experience: What the agent saw and did.
+        maps: The maps to judge. They are a map that ``solve`` gave; a dictionary that ``solve
+            --json`` writes of a map, with at least the key ``at``, a list of ``[step, place,
+            slot]``; several of these, no two of which are equal; a dictionary with the key
+            ``maps``, a list of such dictionaries, and what is said of them all; the path of a file;
+            or documents that were read.
+        bound: The largest number of places that a map may have.
+        noise: The largest number of views that a map may contradict.
+        truth: The real map, for maps that say whether they are the real one (the key ``real``).
+        timeout: The number of seconds after which no further map is judged.
+        every: Whether to tell of each map which axioms and defaults it keeps and breaks (``axioms``
+            of its verdict), and its ``exceptions``. Then a map is not wrong because it breaks what
+            is neither demanded here nor said of it; this includes the path axiom.
+        parts: The demands on the maps, as for ``solve``. The parts ``genus``, ``exceptions``,
+            ``minimal`` and ``euler`` cannot be judged of a single map. With ``no_path_axiom`` maps
+            need not keep the path axiom.
 
     Returns:
-        The verdicts, in the order of the maps; ``unsound`` are those of maps with which something
-        is wrong. In an ``if`` it is true when all maps were judged, and none is unsound.
+        The verdicts, in the order of the maps; ``unsound`` has those of the maps with which
+        something is wrong. In an ``if`` it is true when all maps were judged, and none is unsound.
 
     Raises:
-        TypeError: no experience, no maps, or a truth that is no map of a world.
-        ValueError: an unknown part, or a number that cannot be.
-        InputError: an experience that cannot be; a file that cannot be read; or what is to be
-            judged is no map: one line, which says the how many-th.
+        TypeError: ``experience`` is not an Experience, ``maps`` is none of the above, or ``truth``
+            is not a TopologicalMap.
+        ValueError: A part is not known, or a number is out of its range.
+        InputError: The experience is impossible, a file cannot be read, or an entry is not a map.
+            The message is one line that gives the number of the entry.
     """
     query = query_of(parts, bound=bound, noise=noise, allowed=(*PROPERTIES, *RELAXING))
     every = flag("every", every)
@@ -80,7 +83,7 @@ def check_under(
     truth: TopologicalMap | None,
     every: bool = False,
 ) -> Judged:
-    """The same of documents that were read, under the watch of a command."""
+    """Judge the maps of documents under the watch of a command."""
     demands = [part for part in (*PROPERTIES, *RELAXING) if part in query.parts]
     demands += [f"bound({query.places})"] if query.places else []
     judged = Judged(sum(len(one.maps) for one in documents), experience.steps, demands)
@@ -95,9 +98,14 @@ def check_under(
 
 
 def _documents(given: Any) -> list[Document]:
-    """What is to be judged, in the form in which the command reads it from a file. Maps that are
-    given one by one make one document, so that none of them may be there twice. Raises TypeError
-    or InputError if there are no maps in it."""
+    """Bring what is to be judged into the form that the command reads from a file.
+
+    Maps that are given one by one make one document, so that no map may occur in it twice.
+
+    Raises:
+        TypeError: This is nothing in which there can be maps.
+        InputError: There are no maps in it.
+    """
     if isinstance(given, str | os.PathLike):
         return read.read_maps(path_of(given))
     if isinstance(given, Map):
@@ -123,8 +131,11 @@ def _documents(given: Any) -> list[Document]:
 
 
 def _plain(where: str, given: Given) -> Any:
-    """What was given, as it is read from JSON: of lists, dictionaries and plain numbers. Raises
-    InputError, one line that begins with ``where``, if JSON cannot hold it."""
+    """Convert what was given to what is read from JSON: lists, dictionaries and plain numbers.
+
+    Raises:
+        InputError: JSON cannot hold it; one line that begins with ``where``.
+    """
 
     def plain(value: Any) -> Any:
         if isinstance(value, Map):
@@ -134,4 +145,4 @@ def _plain(where: str, given: Given) -> Any:
     try:
         return json.loads(json.dumps(given, default=plain))
     except (TypeError, ValueError, RecursionError):
-        raise InputError(f"{where}: not what JSON can hold") from None
+        raise InputError(f"{where}: JSON cannot hold it") from None

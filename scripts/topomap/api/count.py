@@ -29,10 +29,13 @@ Number = Literal[
 
 
 class Counts(Reply, Mapping[str, Figure]):
-    """The figures of a search tree, by name: ``per_step`` (hypotheses after each step, from 0),
-    ``nodes``, ``maps_built``, ``final``, ``closed``, ``closed_text``, ``optimal``,
-    ``perpendicular``; if they were asked for, ``circumscribed`` and ``circumscribed_kind``;
-    ``way``, "merging", where maps were counted by merging. What was not counted is None."""
+    """The figures of a search tree, by name.
+
+    They are ``per_step`` (the number of hypotheses after each step, from 0), ``nodes``,
+    ``maps_built``, ``final``, ``closed``, ``closed_text``, ``optimal`` and ``perpendicular``; if
+    they were asked for, ``circumscribed`` and ``circumscribed_kind``; and ``way``, which is
+    "merging", where maps were counted by merging. What was not counted is None.
+    """
 
     def __init__(self, figures: Mapping[str, Any], fault: str | None):
         super().__init__(fault)
@@ -55,9 +58,11 @@ class Counts(Reply, Mapping[str, Figure]):
         return len(self._figures)
 
     def lines(self) -> Iterator[str]:
+        """The figures as the lines that ``topomap count`` prints."""
         return iter(statistics.figures_text(self, self.fault).splitlines())
 
     def document(self) -> dict[str, Any]:
+        """The figures as ``topomap count --json`` writes them."""
         return dict(self._figures)
 
     def __repr__(self) -> str:
@@ -76,30 +81,33 @@ def count(
     jobs: int = 1,
     **parts: Unpack[Parts],
 ) -> Counts:
-    """Count the search tree by clingo, as the paper's Figure 4 does; or by merging hypotheses that
-    have the same future, which counts what is too much to be listed.
+    """Count the search tree of an experience (the paper, section IV, Figure 4).
+
+    clingo counts, or hypotheses that have the same future are merged, which counts maps that are
+    too many to be listed.
 
     Parameters:
-        experience: what was seen and done.
-        bound: the most places that a map may have.
-        horizon: the last step that counts.
-        circumscribe: count the circumscribed maps, too, as ``solve`` gives them: the figure
-            ``circumscribed``, and ``circumscribed_kind``, which says of what kind they are.
-        merging: count by merging, all final maps, those that are closed, and those that are
-            perpendicular, too: ``final``, ``closed_text`` and ``perpendicular``. The other figures
-            are None, and ``per_step`` is empty.
-        timeout: seconds after which it stops.
-        jobs: how many processes do the work.
-        parts: what the maps are to have; not genus and minimal.
+        experience: What the agent saw and did.
+        bound: The largest number of places that a map may have.
+        horizon: The last step that counts. By default all steps count.
+        circumscribe: Whether to count the circumscribed maps, too, as ``solve`` gives them: the
+            figure ``circumscribed``, and ``circumscribed_kind``, which says of which kind they are.
+        merging: Whether to count by merging. It counts all final maps, the closed ones, and those
+            that are also perpendicular: ``final``, ``closed_text`` and ``perpendicular``. The other
+            figures are None, and ``per_step`` is empty.
+        timeout: The number of seconds after which the work stops.
+        jobs: The number of processes that share the work.
+        parts: The demands on the maps, as for ``solve``; not ``genus``, ``exceptions`` and
+            ``minimal``.
 
     Returns:
         The figures.
 
     Raises:
-        TypeError: no experience.
-        ValueError: an unknown part, or a number that cannot be.
-        InputError: an experience that cannot be, one line that names step and fault; or, with
-            ``merging``, one that tells what cannot be merged.
+        TypeError: ``experience`` is not an Experience.
+        ValueError: A part is not known, or a number is out of its range.
+        InputError: The experience is impossible, or, with ``merging``, cannot be merged. The
+            message is one line that names the step and the fault.
     """
     query = query_of(parts, bound=bound, horizon=horizon, allowed=(*DEMANDS, *RELAXING))
     circumscribe = flag("circumscribe", circumscribe)
@@ -108,15 +116,17 @@ def count(
     watch = begin(experience, timeout)
     if flag("merging", merging):
         if circumscribe or jobs > 1:
-            raise ValueError("merging: not with circumscribe or jobs")
+            raise ValueError("merging cannot be combined with circumscribe or jobs")
         return merged_under(watch, experience, query)
     with crew_of(jobs) as crew:
         return count_under(watch, experience, query, Journal(), crew, circumscribe)
 
 
 def merged_under(watch: Watch, experience: Experience, query: Query) -> Counts:
-    """How many maps there are, and how many of them are closed, by merging; under the watch of a
-    command. What is soonest found comes first."""
+    """Count all maps, and the closed ones, by merging, under the watch of a command.
+
+    The figures come in the order in which they are found soonest.
+    """
     figures: dict[str, Any] = {**dict.fromkeys(statistics.KEYS), "per_step": [], "way": "merging"}
     with Attempt() as attempt:
         for key, number in statistics.merged(experience, query, watch):
@@ -132,8 +142,10 @@ def count_under(
     crew: Crew,
     circumscribe: bool = False,
 ) -> Counts:
-    """The same of the maps of a query, under the watch of a command, which has a journal of the
-    work and a crew for it."""
+    """Count the search tree of a query under the watch of a command.
+
+    The command has a journal of the work, and a crew that shares it.
+    """
     figures: dict[str, Any] = {}
     with Attempt() as attempt:
         statistics.tree(experience, query, watch, journal, figures, crew, circumscribe)

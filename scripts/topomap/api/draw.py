@@ -1,4 +1,4 @@
-"""Maps drawn into files and texts."""
+"""Maps that are drawn into files and texts."""
 
 import threading
 from io import BytesIO
@@ -13,11 +13,15 @@ from topomap.runtime.files import output
 from topomap.runtime.watch import Late, never
 
 FORMATS = ("svg", "png", "pdf")
-_ALONE = threading.Lock()  # the settings of matplotlib are the process's, not a thread's
+_ALONE = threading.Lock()  # matplotlib has one set of settings for all threads
 
 
 def form_of(file: str | Path) -> str:
-    """What a picture in a file is, by the ending of its name. Raises InputError, one line."""
+    """Tell the format of a picture by the ending of the name of its file.
+
+    Raises:
+        InputError: The ending is not known. One line.
+    """
     form = Path(file).suffix[1:].lower()
     if form not in FORMATS:
         raise InputError(f"{file}: a picture is {', '.join(FORMATS)}, by its last letters")
@@ -25,9 +29,18 @@ def form_of(file: str | Path) -> str:
 
 
 def save(scene: Scene, file: str | Path, late: Late = never) -> str:
-    """Draw a map into a file; plainly, if it is ``late`` before there is a better drawing. Returns
-    what the picture says of that, or nothing. Raises InputError, one line, where it cannot be
-    written, MemoryError, and what ``late`` raises; then the file is as it was."""
+    """Draw a map into a file.
+
+    If it is ``late`` before there is a better drawing, the map is drawn plainly. On an error the
+    file stays as it was.
+
+    Returns:
+        What the picture says if it is drawn plainly; otherwise an empty text.
+
+    Raises:
+        InputError: The file cannot be written. One line.
+        MemoryError: There is not enough memory. What ``late`` raises is passed on, too.
+    """
     form = form_of(file)
     need("draw", str(file))
     ready()
@@ -38,7 +51,7 @@ def save(scene: Scene, file: str | Path, late: Late = never) -> str:
 
 
 def svg(scene: Scene, late: Late = never) -> str:
-    """A map as the text of an SVG. Raises as ``save`` does."""
+    """Draw a map as the text of an SVG; errors are those of ``save``."""
     need("draw", "a drawing")
     ready()
     made = BytesIO()
@@ -49,8 +62,16 @@ def svg(scene: Scene, late: Late = never) -> str:
 def characters(
     scene: Scene, columns: int, coloured: bool, ascii: bool = False, late: Late = never
 ) -> tuple[str, str]:
-    """A map as lines of characters, at most so many in a line; of ASCII alone, if asked for. And
-    what ``save`` returns. Raises MemoryError, and what ``late`` raises."""
+    """Draw a map as lines of characters, each of at most so many columns.
+
+    With ``ascii`` only characters of ASCII are used.
+
+    Returns:
+        The lines, and what ``save`` returns.
+
+    Raises:
+        MemoryError: There is not enough memory. What ``late`` raises is passed on, too.
+    """
     ready()
     from topomap.drawing import terminal
 

@@ -1,4 +1,4 @@
-"""Maps for other tools, and back."""
+"""Maps that are written for other tools, and read back."""
 
 from topomap.drawing.ready import ready
 from topomap.drawing.scenes import Scene
@@ -6,9 +6,17 @@ from topomap.runtime.watch import Late, never
 
 
 def exported(scene: Scene, form: str, late: Late = never) -> tuple[str, str]:
-    """A map as the text of a file, with positions: ``graphml``, ``json`` (node-link), ``dot``,
-    ``clingraph`` or ``tmap2``. If places are drawn plainly, as it is ``late`` before there is a
-    better drawing, the second text says so. Raises MemoryError, and what ``late`` raises."""
+    """Write a map, with positions, as the text of a file for another tool.
+
+    ``form`` is ``graphml``, ``json`` (node-link), ``dot``, ``clingraph`` or ``tmap2``.
+
+    Returns:
+        The text, and a note if it was ``late`` before there was a good drawing, so that the places
+        are drawn plainly.
+
+    Raises:
+        MemoryError: There is not enough memory. What ``late`` raises is passed on, too.
+    """
     ready()
     from topomap.drawing.layout import layout
     from topomap.exchange.exports import DRAWN
@@ -18,8 +26,14 @@ def exported(scene: Scene, form: str, late: Late = never) -> tuple[str, str]:
 
 
 def imported(file: str) -> str:
-    """What ``solve --json`` writes of the map in a file that ``export`` wrote, GraphML or
-    node-link JSON. Raises InputError, one line, if there is none."""
+    """Read a map that ``export`` wrote as GraphML or node-link JSON.
+
+    Returns:
+        What ``solve --json`` writes of this map.
+
+    Raises:
+        InputError: There is no such map in the file. One line.
+    """
     from topomap.exchange.imports import import_map
 
     return import_map(file)

@@ -34,36 +34,47 @@ class Explained(Reply):
 
     @property
     def statement(self) -> str | None:
-        """The statement; None if it was asked why there is no map."""
+        """The statement; None if the question was why there is no map."""
         return self._statement.text if self._statement else None
 
     @property
     def verdict(self) -> str:
-        """``impossible``: the statement holds in no map; ``certain``: it holds in all; ``open``:
-        in some, and not in others; ``no map``: there is none at all; ``map``: there are maps,
-        where no statement was asked about; or ``not settled``."""
+        """The verdict in one word or two.
+
+        It is ``impossible`` if the statement holds in no map; ``certain`` if it holds in all maps;
+        ``open`` if it holds in some and not in others; ``no map`` if there is no map at all;
+        ``map`` if there are maps and the question was about no statement; or ``not settled``.
+        """
         if self.explanation.verdict == "open" and not self._statement:
             return "map"
         return self.explanation.verdict or "not settled"
 
     @property
     def reasons(self) -> list[Reason]:
-        """The reasons: each has a ``name``, what is ``told`` of it (``words``, ``steps``, ``walk``
-        and ``places``), and ``at``, the dstates of a map that breaks it alone; empty where the
-        verdict needs none, or none were found as yet."""
+        """The reasons, which together are an unsatisfiable core; empty if the verdict needs none.
+
+        Each reason has a ``name``, what is ``told`` of it (``words``, ``steps``, ``walk`` and
+        ``places``), and ``at``, the dstates of a map that breaks only this reason. It is empty,
+        too, if no reasons have been found.
+        """
         return list(self.explanation.reasons)
 
     @property
     def in_the_way(self) -> list[str]:
-        """Where there is no map, and a closed one was asked for: what, if it alone is taken away,
-        lets one through, as ``Answer.in_the_way`` has it. There are no reasons then."""
+        """What alone stands in the way of a closed map, as ``Answer.in_the_way`` has it.
+
+        It is told where closed maps were asked for and there is no map. Then there are no reasons.
+        """
         return list(self.explanation.in_the_way)
 
     @property
     def gathered(self) -> bool:
-        """Whether reasons are whole rules, or what is seen after one step. They are where there is
-        no map, and single reasons would be many. Each then has ``breaks``, the single ones that are
-        broken in the map ``at``, and ``then``, the first of them in words."""
+        """Whether each reason is a whole rule, or all that was seen after one step.
+
+        Reasons are gathered like this where there is no map and single reasons would be many. Each
+        reason then has ``breaks``, the single reasons that the map ``at`` breaks, and ``then``, the
+        first of them in words.
+        """
         return self.explanation.gathered
 
     @property
@@ -73,23 +84,26 @@ class Explained(Reply):
 
     @property
     def minimal(self) -> bool:
-        """Whether it is verified that the reasons are enough, and that none can be spared."""
+        """Whether it is verified that the reasons are enough, and that each of them is needed."""
         return self.explanation.minimal
 
     @property
     def horizon(self) -> int | None:
-        """After which step it is so already; None where that is not known."""
+        """The first step after which the verdict holds; None if that is not known."""
         return self.explanation.horizon
 
     @property
     def witness(self) -> Map | None:
-        """A map in which the statement holds, or any map if there is none, where the verdict is
-        that there is one; else None."""
+        """A map in which the statement holds, or None.
+
+        It is None unless the verdict says that there is such a map. If the question was about no
+        statement, it is any map.
+        """
         return self._map(True)
 
     @property
     def counter(self) -> Map | None:
-        """A map in which the statement does not hold, where it is open; else None."""
+        """A map in which the statement does not hold; None unless the verdict is ``open``."""
         return self._map(False)
 
     def _map(self, holds: bool) -> Map | None:
@@ -97,9 +111,11 @@ class Explained(Reply):
         return None if at is None else Map(self.experience, Found(at, "consistent"))
 
     def lines(self) -> Iterator[str]:
+        """The verdict and the reasons as the lines that ``topomap explain`` prints."""
         return self.explanation.lines(self.experience, self._statement, self.fault)
 
     def document(self) -> dict[str, Any]:
+        """The verdict and the reasons as ``topomap explain --json`` writes them."""
         return self.explanation.document(self._statement, self.query)
 
 
@@ -112,28 +128,30 @@ def explain(
     timeout: float | None = None,
     **parts: Unpack[Parts],
 ) -> Explained:
-    """Tell why a statement is impossible or certain, or why there is no map: reasons none of
-    which can be spared. (Each is of a rule of the paper, sections II and III, or of what was
-    seen.)
+    """Tell why a statement is impossible or certain, or why there is no map.
+
+    The reasons form a minimal unsatisfiable core: each of them is needed. Each is a rule of the
+    paper, sections II and III, applied to certain steps, or something that was seen.
 
     Parameters:
-        experience: what was seen and done.
-        statement: such as ``same(3,12)``, ``places < 12``, ``not planar``; what can be said is in
-            ``topomap explain --help``. Without one: why there is no map.
-        bound: the most places that a map may have.
-        horizon: the last step that counts.
-        timeout: seconds after which it stops.
-        parts: what the maps are to have; not ``genus`` and ``minimal``, since that another map
-            is better is no reason of this kind.
+        experience: What the agent saw and did.
+        statement: A statement, such as ``same(3,12)``, ``places < 12`` or ``not planar``; ``topomap
+            explain --help`` lists what can be said. Without one, the question is why there is no
+            map.
+        bound: The largest number of places that a map may have.
+        horizon: The last step that counts. By default all steps count.
+        timeout: The number of seconds after which the work stops.
+        parts: The demands on the maps, as for ``solve``; not ``genus``, ``exceptions`` and
+            ``minimal``, because a better map is not a reason of this kind.
 
     Returns:
-        The verdict and the reasons; what was not found in time is said to be so.
+        The verdict and the reasons. What was not found in time is said to be so.
 
     Raises:
-        TypeError: no experience, or a statement that is no text.
-        ValueError: an unknown part, or a number that cannot be.
-        InputError: an experience that cannot be, or a text that is no statement about it; one
-            line.
+        TypeError: ``experience`` is not an Experience, or the statement is not a text.
+        ValueError: A part is not known, or a number is out of its range.
+        InputError: The experience is impossible, or the text is not a statement about it. The
+            message is one line.
     """
     query = query_of(parts, bound=bound, horizon=horizon, allowed=(*DEMANDS, *RELAXING))
     if statement is not None:
@@ -144,9 +162,9 @@ def explain(
 def explain_under(
     watch: Watch, experience: Experience, statement: str | None, query: Query
 ) -> Explained:
-    """The same of the maps of a query, under the watch of a command."""
+    """Explain a statement about the maps of a query, under the watch of a command."""
     seen = experience.cut(LARGEST if query.horizon is None else query.horizon)
-    query = replace(query, horizon=None)  # which ends the experience here
+    query = replace(query, horizon=None)  # the experience has been cut there
     asked = None if statement is None else parse_statement(statement, seen, "explain")
     found = Explanation()
     with Attempt() as attempt:

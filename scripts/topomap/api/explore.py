@@ -1,4 +1,4 @@
-"""Where to go next, so that the maps are told apart."""
+"""Where to go next, so that a further walk tells the maps apart."""
 
 import os
 from collections.abc import Iterable, Iterator, Sequence
@@ -22,14 +22,16 @@ from topomap.runtime.checks import flag, shown, whole, whole_if_given
 from topomap.runtime.limits import LARGEST, LONGEST_WALK, MOST_WALKED
 from topomap.runtime.watch import Watch
 
-Among = str | os.PathLike[str] | Map  # a kind of maps, a file of them, or one
+Among = str | os.PathLike[str] | Map  # a kind of maps, a file of maps, or a map
 _ONE = (str, os.PathLike, Map)
 _WANTED = f"a Map, a kind of maps ({', '.join(PARTS_OF)}) or a file of maps is wanted, or several"
 
 
 class NextWalk(Reply):
-    """A further walk, and what the maps in question predict of it. ``fault`` says why there may be
-    other maps, or a better walk."""
+    """A further walk, and what each of the maps in question predicts of it.
+
+    ``fault`` says why there may be other maps, or a better walk.
+    """
 
     def __init__(self, among: Candidates, planned: Planned | None):
         super().__init__(planned.fault if planned else among.fault)
@@ -46,18 +48,25 @@ class NextWalk(Reply):
 
     @property
     def kind(self) -> str:
-        """``apart``: the walk refutes maps whichever is the real one; ``pending``: it leads to a
-        pending gateway, as no walk tells the maps apart; ``settled``: there is one map, and it
-        is closed; ``bisimilar``: no walk ever tells the maps apart, and no gateway is pending;
-        ``no map``: no such map is consistent; ``not settled``: none of these is known."""
+        """What the walk achieves, or why there is none.
+
+        It is ``apart`` if the walk refutes some map, whichever map is the real one; ``pending`` if
+        no walk tells the maps apart and this one leads to a pending gateway; ``settled`` if there
+        is one map, and it is closed; ``bisimilar`` if no walk can ever tell the maps apart, and no
+        gateway is pending; ``no map`` if no such map is consistent; or ``not settled`` if none of
+        these is known.
+        """
         if self.planned is not None:
             return self.planned.kind or "not settled"
         return "not settled" if self.among.fault else "no map"
 
     @property
     def turns(self) -> tuple[int, ...]:
-        """The turn of each step of the walk: the slot of the gateway by which the agent leaves,
-        clockwise of the one where it stands. Empty if there is no walk."""
+        """The turn of each step of the walk; empty if there is no walk.
+
+        A turn is the slot of the gateway by which the agent leaves, counted clockwise from the one
+        where it stands.
+        """
         return self.planned.plan.turns if self.planned else ()
 
     @property
@@ -72,28 +81,36 @@ class NextWalk(Reply):
 
     @property
     def proved(self) -> bool:
-        """Whether no walk leaves fewer maps, nor as few sooner."""
+        """Whether it is proved that no walk leaves fewer maps, or as few in fewer steps."""
         return self.planned.plan.proved if self.planned else False
 
     @property
     def predictions(self) -> tuple[tuple[Prediction | None, ...], ...]:
-        """What each map predicts of each step: ``view``, ``landmarks`` and ``marker``; None where
-        it predicts nothing, once the walk went through a pending gateway."""
+        """What each map predicts of each step: ``view``, ``landmarks`` and ``marker``.
+
+        It is None from the step on that goes through a pending gateway, about which the map
+        predicts nothing.
+        """
         return self.planned.plan.predictions if self.planned else ()
 
     @property
     def untold(self) -> tuple[Untold, ...]:
-        """The pairs of maps that the walk does not tell apart, and why."""
+        """The pairs of maps that the walk does not tell apart, and why it does not."""
         return self.planned.plan.untold if self.planned else ()
 
     def lines(self) -> Iterator[str]:
+        """The walk and the predictions as the lines that ``topomap explore`` prints."""
         return self.planned.lines() if self.planned else iter([self.among.lack()])
 
     def document(self) -> dict[str, Any]:
+        """The walk and the predictions as ``topomap explore --json`` writes them."""
         return self.planned.document() if self.planned else {"maps": []}
 
     def proofs(self) -> dict[str, Any]:
-        """Why no walk tells maps apart, as ``--proof`` writes it, for ``check_proofs``."""
+        """The bisimulations that prove that no walk tells the maps apart, for ``check_proofs``.
+
+        They are what ``topomap explore --proof`` writes.
+        """
         return proofs.proofs(self.planned) if self.planned else {}
 
 
@@ -106,8 +123,11 @@ def candidates(
     timeout: float | None = None,
     **parts: Unpack[Parts],
 ) -> Candidates:
-    """The maps that may be the real one. Parameters and errors are those of ``explore``; the
-    maps are in ``each``, and ``facts()`` gives them to ``encodings/explore.lp``."""
+    """Gather the maps that may be the real one.
+
+    The parameters and the errors are those of ``explore``. The maps are in ``each``, and
+    ``facts()`` gives them as facts for ``encodings/explore.lp``.
+    """
     query = query_of(parts, bound=bound, horizon=horizon, allowed=CHOSEN)
     asked = _asked(among)
     return candidates_under(begin(experience, timeout), experience, asked, query)
@@ -116,16 +136,22 @@ def candidates(
 def candidates_under(
     watch: Watch, experience: Experience, asked: Sequence[str | At], query: Query
 ) -> Candidates:
-    """The same of kinds of maps and files, by name, and maps, by their dstates, under the watch of
-    a command."""
+    """Gather candidate maps under the watch of a command.
+
+    Kinds of maps and files are given by name, and maps by their dstates.
+    """
     cut = experience.cut(LARGEST if query.horizon is None else query.horizon)
     return gather(experience, cut, query, asked, watch)
 
 
 def _asked(among: Among | Iterable[Among]) -> list[str | At]:
-    """The maps in question: kinds and files by name, maps by their dstates. Raises TypeError if one
-    is something else, and ValueError if there is none: that no map is consistent would be no
-    answer, as none was looked for."""
+    """Bring the maps in question into one form: kinds and files by name, maps by their dstates.
+
+    Raises:
+        TypeError: One is something else.
+        ValueError: There is none. "No map is consistent" would be no answer, as none was looked
+            for.
+    """
     if isinstance(among, _ONE):
         among = [among]
     if not isinstance(among, Iterable):
@@ -151,31 +177,34 @@ def explore(
     timeout: float | None = None,
     **parts: Unpack[Parts],
 ) -> NextWalk:
-    """Say where to go next: the shortest further walk that tells the maps apart, or leaves the
-    fewest in the worst case; or the proof that no walk does. (It goes beyond the paper, which
-    maps what was seen.)
+    """Say where to go next, so that as few maps as possible are left.
+
+    The walk is the shortest further walk that tells the maps apart, or else leaves the fewest of
+    them in the worst case. If no walk does, a bisimulation proves it. (This goes beyond the paper,
+    which maps what was seen.)
 
     Parameters:
-        experience: what was seen and done.
-        among: the maps that may be the real one: ``optimal`` (the best so far, where none is
-            closed), ``closed``, ``perpendicular`` (and closed), a file of maps, or a map;
-            several for all of them; or what ``candidates`` gave, which was told already what
-            ``bound``, ``horizon`` and ``parts`` are.
-        marker: whether the agent carries a marker, which it may drop once.
-        steps: the most steps of the walk, 1 to 1000.
-        bound: the most places that a map may have.
-        horizon: the last step that counts.
-        timeout: seconds after which it stops.
-        parts: what the maps are to have: ``planar`` and ``perpendicular``.
+        experience: What the agent saw and did.
+        among: The maps that may be the real one: ``optimal`` (those that are best so far, if none
+            is closed), ``closed``, ``perpendicular`` (these are closed, too), a file of maps, or a
+            map; a list of several of these; or what ``candidates`` gave, which has its own
+            ``bound``, ``horizon`` and ``parts``.
+        marker: Whether the agent carries a marker, which it may put down once.
+        steps: The largest number of steps of the walk, from 1 to 1000.
+        bound: The largest number of places that a map may have.
+        horizon: The last step that counts. By default all steps count.
+        timeout: The number of seconds after which the work stops.
+        parts: The demands on the maps, as for ``solve``: ``planar``, ``perpendicular`` and
+            ``no_path_axiom``.
 
     Returns:
-        The walk; its ``fault`` says why it is not proved to be the best.
+        The walk. Its ``fault`` says why it is not proved to be the best, if so.
 
     Raises:
-        TypeError: no experience, or no maps.
-        ValueError: an unknown part, a number that cannot be, or not one map to tell apart.
-        InputError: an experience that cannot be, a file that cannot be read, or a map that is none
-            of this experience.
+        TypeError: ``experience`` is not an Experience, or ``among`` is not one of the above.
+        ValueError: A part is not known, a number is out of its range, or ``among`` is empty.
+        InputError: The experience is impossible, a file cannot be read, or a map is not one of this
+            experience. The message is one line.
     """
     steps, marker = whole("steps", steps, 1, MOST_WALKED), flag("marker", marker)
     query = query_of(parts, bound=bound, horizon=horizon, allowed=CHOSEN)
@@ -190,7 +219,7 @@ def explore(
 
 
 def explore_under(watch: Watch, among: Candidates, marker: bool, steps: int) -> NextWalk:
-    """The same of the maps in question, under the watch of a command."""
+    """Look for the next walk among candidates, under the watch of a command."""
     if not among.each:
         return NextWalk(among, None)
     watch.title("the next walk")
@@ -202,20 +231,20 @@ def explore_under(watch: Watch, among: Candidates, marker: bool, steps: int) -> 
 def check_proofs(
     experience: Experience, path: str | os.PathLike[str], *, horizon: int | None = None
 ) -> Checked:
-    """Check the proofs in a file, which ``--proof`` or ``NextWalk.proofs`` made, without a solver.
+    """Check the proofs in a file without a solver.
 
     Parameters:
-        experience: what was seen and done.
-        path: the name of the file.
-        horizon: the last step that counts.
+        experience: What the agent saw and did.
+        path: The file, which ``topomap explore --proof`` or ``NextWalk.proofs`` made.
+        horizon: The last step that counts. By default all steps count.
 
     Returns:
         How many proofs there are, and what is ``wrong`` with them.
 
     Raises:
-        TypeError: no experience, or no path.
-        ValueError: a horizon that cannot be.
-        InputError: there are no proofs in the file.
+        TypeError: ``experience`` is not an Experience, or ``path`` is not the path of a file.
+        ValueError: ``horizon`` is out of its range.
+        InputError: There are no proofs in the file.
     """
     demand_experience(experience)
     last = whole_if_given("horizon", horizon, 0)

@@ -1,4 +1,4 @@
-"""An exploration that is followed as it happens."""
+"""Following an exploration as it happens."""
 
 from collections.abc import Iterable, Iterator
 from functools import cached_property
@@ -31,25 +31,30 @@ class FollowerStatus:
 
     @property
     def hypotheses(self) -> int | None:
-        """How many hypotheses there are: all of them if ``exact``, else there are more than that.
-        None if they were not counted."""
+        """How many hypotheses there are; None if they were not counted.
+
+        If ``exact`` is false, there are more than this number.
+        """
         return self.answer.status.hypotheses
 
     @property
     def exact(self) -> bool:
-        """Whether ``hypotheses`` is their number."""
+        """Whether ``hypotheses`` is the exact number."""
         return self.answer.status.exact
 
     @property
     def none_since(self) -> int | None:
-        """The first step after which there is no hypothesis; None if none is known."""
+        """The first step after which there is no hypothesis; None if there still are some."""
         return self.answer.status.none_since
 
     @cached_property
     def best(self) -> list[Map]:
-        """The best maps: the closed ones with the fewest exceptions to consistent boundaries, then
-        the fewest paths, then the fewest places; if no map is closed, the best so far, pending
-        gateways allowed. See ``all_best``."""
+        """The best maps.
+
+        They are the closed maps with the fewest exceptions to consistent boundaries, then the
+        fewest paths, then the fewest places. If no map is closed, they are those that are best so
+        far, which may have pending gateways. ``all_best`` says whether they are proved to be all.
+        """
         status = self.answer.status
         return [
             Map(
@@ -69,40 +74,48 @@ class FollowerStatus:
 
     @property
     def kind(self) -> str:
-        """What the best maps are: "optimal" or "best so far"; "not proved to be best", where only
-        some of the hypotheses are kept, because they are too many; "no map", if it is proved that
-        there is none; else "not settled"."""
+        """What the best maps are.
+
+        It is "optimal" or "best so far"; "not proved to be best", if only some of the hypotheses
+        are kept because there are too many; "no map", if it is proved that there is none; otherwise
+        "not settled".
+        """
         status = self.answer.status
         return status.kind or ("no map" if status.all_best else "not settled")
 
     @property
     def cost(self) -> tuple[int, ...]:
-        """What each of the best maps costs: its exceptions, paths and places; empty if there is
-        none."""
+        """The cost of each best map: its exceptions, paths and places; empty if there is no map."""
         return self.answer.status.cost
 
     @property
     def certain(self) -> Certain:
-        """What is certain by now: ``same``, pairs of steps after which the agent was at one place;
-        ``new``, steps that came to a place for the first time; ``linked``, gateways (T, S, U, R)
-        that are joined, slot S of where it was after step T to slot R of where it was after U,
-        counted clockwise of the gateway stood at then."""
+        """What is certain by now: it holds in all hypotheses (it is a cautious consequence).
+
+        ``same`` has pairs of steps after which the agent was at one place. ``new`` has steps that
+        came to a place for the first time. ``linked`` has gateways (T, S, U, R) that are joined:
+        slot S of the place after step T to slot R of the place after step U, counted clockwise from
+        the gateway where the agent stood.
+        """
         return self.answer.certain
 
     @property
     def new(self) -> Certain:
-        """What of that was not certain before this step."""
+        """The part of ``certain`` that was not certain before this step."""
         return self.answer.new
 
     @property
     def next(self) -> Plan | None:
-        """What to do next: what ``explore`` says of the best maps (``kind``, ``turns``, ``drop``,
-        ``left`` and ``proved``). None if no walk was found; whether there is one is then open."""
+        """What to do next: what ``explore`` says of the best maps.
+
+        It has ``kind``, ``turns``, ``drop``, ``left`` and ``proved``. It is None if no walk was
+        found; whether there is one is then open.
+        """
         return self.answer.plan
 
     @property
     def fault(self) -> str | None:
-        """Why something is missing; None if nothing is."""
+        """Why something is missing; None if nothing is missing."""
         return self.answer.fault
 
     @property
@@ -111,12 +124,21 @@ class FollowerStatus:
         return self.fault is None
 
     def lines(self, seconds: float) -> Iterator[str]:
-        """What is known, to read, as ``topomap follow`` prints it; it took so many seconds."""
+        """What is known as the lines that ``topomap follow`` prints.
+
+        Parameters:
+            seconds: The number of seconds that it took, which the first line tells.
+
+        Returns:
+            The lines.
+        """
         return self.answer.lines(seconds)
 
     def document(self) -> dict[str, Any]:
-        """What is known as ``topomap follow --json`` writes it, but for the seconds that it took
-        and the keys that all answers have (``docs/formats.md``)."""
+        """What is known as ``topomap follow --json`` writes it.
+
+        The seconds, and the keys that all answers have (``docs/formats.md``), are not in it.
+        """
         return self.answer.document()
 
     def __repr__(self) -> str:
@@ -128,14 +150,14 @@ class FollowerStatus:
 
 
 class Follower:
-    """An exploration that goes on, step by step; the last steps can be taken back."""
+    """An exploration that goes on step by step; the last steps can be taken back."""
 
     def __init__(self, following: Following, timeout: float | None = None):
         self._following, self._timeout = following, timeout
 
     @property
     def record(self) -> Record:
-        """What is known of the steps."""
+        """The steps that were told so far."""
         return self._following.record
 
     def step(
@@ -157,33 +179,36 @@ class Follower:
         look: bool = False,
         watch: Watch | None = None,
     ) -> FollowerStatus:
-        """Go a step on.
+        """Tell the next step, and find out what is known after it.
 
         Parameters:
-            view: the slots of the gateways that are seen, clockwise of the one stood at, which is
-                0, from 0 to slots - 1.
-            turn: the slot of the gateway by which the agent left where it was before, clockwise
-                of the one where it stood; None for the first view, where the exploration starts.
-            landmarks: the landmarks that are seen, as terms of clingo, such as ``"a"``.
-            drop, pick, marker: whether the marker is put down here, is taken up, is seen; of a
-                marker that has a name, the name.
-            compass: the compass slot to which the gateway stood at points.
-            shift: how far this step moved the agent, as (x, y), in whole numbers of any unit.
-            length: how long this step was, in whole units.
-            same, apart: earlier steps after which the agent was at this place, or at another one.
-            straight: the pairs of slots of the view whose gateways are on one path. The
-                first view tells them, or no view does; None of a later view: there are none.
-            start: whether a new log of the same world begins here; then there is no turn.
-            look: whether it is no travel but a second look; then there is no turn.
-            watch: that of a command; then the time limit is not used.
+            view: The slots of the gateways that are seen, from 0 to slots - 1, counted clockwise
+                from the gateway where the agent stands, which has slot 0.
+            turn: The slot of the gateway by which the agent left the place before, counted
+                clockwise from the one where it stood; None for the first view, where the
+                exploration starts.
+            landmarks: The landmarks that are seen, as terms of clingo, such as ``"a"``.
+            drop: Whether the marker is put down here; for a marker that has a name, the name.
+            pick: Whether the marker is taken up here, or its name.
+            marker: Whether the marker is seen here, or its name.
+            compass: The compass slot to which the gateway points where the agent stands.
+            shift: How far this step moved the agent, as (x, y), in whole numbers of any unit.
+            length: How long this step was, in whole numbers of any unit.
+            same: Earlier steps after which the agent was at this place.
+            apart: Earlier steps after which the agent was at another place.
+            straight: The pairs of slots of the view whose gateways are on one path. Either the
+                first view and the later ones tell them, or none does; None for a later view means
+                that no two gateways are on one path.
+            start: Whether a new log of the same world begins here. Then there is no turn.
+            look: Whether this step is not a travel but a second look. Then there is no turn.
+            watch: The watch of a command; then the time limit of the follower is not used.
 
         Returns:
-            What is known now.
+            What is known after the step.
 
         Raises:
-            ValueError: there can be no such step.
-            TypeError: a view, or landmarks, that are no collection. With either error nothing
-                has changed.
+            ValueError: Such a step is impossible. Nothing has changed.
+            TypeError: ``view`` or ``landmarks`` is not a collection. Nothing has changed.
         """
         data: dict[str, Any] = {
             "view": [integer("view: slot", slot) for slot in collection("view", view)],
@@ -212,21 +237,48 @@ class Follower:
         return self.status(watch)
 
     def undo(self, steps: int = 1, *, watch: Watch | None = None) -> FollowerStatus:
-        """Take the last steps back, and return what is known then. Raises ValueError if there are
-        not as many; the first view cannot be taken back."""
+        """Take the last steps back.
+
+        Parameters:
+            steps: How many steps to take back. The first view cannot be taken back.
+            watch: The watch of a command; then the time limit of the follower is not used.
+
+        Returns:
+            What is known then.
+
+        Raises:
+            ValueError: There are not as many steps.
+        """
         for _ in self.take(self.record.undone(integer("steps", steps))):
             pass
         return self.status(watch)
 
     def take(self, record: Record) -> Iterator[int]:
-        """Go to what a record says; the steps at which it stands on the way, of each of which
-        ``status`` tells."""
+        """Go to the steps of a record.
+
+        Parameters:
+            record: The steps.
+
+        Yields:
+            The number of each step on the way at which it stops; ``status`` tells what is known
+            there.
+        """
         return self._following.take(record)
 
     def status(self, watch: Watch | None = None) -> FollowerStatus:
-        """What is known now. Raises ValueError before the first step."""
+        """Tell what is known now.
+
+        Parameters:
+            watch: The watch of a command; then the time limit of the follower is not used.
+
+        Returns:
+            What is known.
+
+        Raises:
+            ValueError: There is no step yet.
+        """
         if self._following.solver is None:
-            raise ValueError("no step as yet")
+            raise ValueError("no step yet")
         return FollowerStatus(self._following.answer(watch or Watch(self._timeout)))
 
 
@@ -242,26 +294,27 @@ def follow(
     tolerance: int | None = None,
     **parts: Unpack[OnlineParts],
 ) -> Follower:
-    """Follow an exploration as it happens (the hypotheses and the best maps are those of the
-    paper, sections II and III).
+    """Follow an exploration as it happens (its hypotheses are those of the paper, section II).
 
     Parameters:
-        slots: the number of directions at each place, even; None if a line will tell it.
-        bound: the most places that a map may have.
-        marker: whether the agent carries a marker, for what to do next.
-        count_limit: of more hypotheses it is only told that they are more.
-        timeout: seconds that the answer to a step may take.
-        drift, stretch: how far shifts and lengths may be wrong, in percent; 10 by default.
-        tolerance: by how many slots bearings may be wrong; 0 by default.
-        parts: what the maps are to have: ``planar``; and ``no_path_axiom``, that a path may hold a
-            place twice, and may be circular.
+        slots: The number of directions at each place, an even number; None if a line will tell it.
+        bound: The largest number of places that a map may have.
+        marker: Whether the agent carries a marker, which the next steps may use.
+        count_limit: The largest number of hypotheses that is counted. If there are more, only that
+            is said.
+        timeout: The number of seconds that the answer to a step may take.
+        drift: By how many percent of the way shifts may be wrong; 10 by default.
+        stretch: By how many percent lengths of one way may differ; 10 by default.
+        tolerance: By how many slots bearings may be wrong; 0 by default.
+        parts: The demands on the maps: ``planar``; and ``no_path_axiom``, by which a path may
+            contain a place twice, and may be circular.
 
     Returns:
-        A follower, to which the first view is told by ``step(view)``, the next ones by
-        ``step(view, turn)``.
+        A follower. Its ``step(view)`` tells it the first view, and ``step(view, turn)`` each later
+        one.
 
     Raises:
-        ValueError: an unknown part, or a number that cannot be.
+        ValueError: A part is not known, or a number is out of its range.
     """
     asked = asked_of(parts, OnlineParts.__annotations__)
     planar, path_axiom = "planar" in asked, "no_path_axiom" not in asked

@@ -22,37 +22,41 @@ def generate(
     odometry: float | None = None,
     lengths: bool = False,
 ) -> Instance:
-    """Explore a world, and note what is seen (the paper, section IV).
+    """Explore a world, and note what the agent sees (the paper, section IV).
 
     Parameters:
         world: ``grid``, ``torus``, ``cylinder``, ``crescents``, ``maze``, ``hexagons`` or
-            ``triangles``, with ``size``, its rows and columns; or an environment that was made
-            before.
+            ``triangles``; or an environment that was made before.
+        size: The rows and the columns of a world that is named.
         route: ``snake``, ``walk`` (random), ``tour`` (over every way), compass letters such as
             ``ESSENN``, or absolute slots such as ``0,3,1``.
-        steps: cut the route after so many steps, 100,000 at most; a walk needs it.
-        start: the first place, such as ``0,2``; the smallest by default.
-        facing: the gateway stood at first, a slot; by default the one that is first left by.
-        signs: the share of places, 0 to 1, that carry their own name as a landmark.
-        seed: for walk, signs and maze.
-        thin: the share of the ways of a maze, 0 to 1, that are taken away.
-        name: of the instance; made from the arguments by default.
-        compass: whether the compass slot of the gateway stood at is noted after each step.
-        odometry: if given, how far each step led is noted, in hundredths of a way of a grid or a
-            lattice, or in the units of a network; errors are so many percent of the way at most,
+        steps: The number of steps after which the route is cut, 100,000 at most; a random walk
+            needs it.
+        start: The first place, such as ``0,2``; the smallest by default.
+        facing: The slot of the gateway where the agent stands at first; by default the one by which
+            the route leaves.
+        signs: The share of the places, from 0 to 1, that have their own name as a landmark.
+        seed: The seed of what is random: walks, signs, mazes and the errors of the odometry.
+        thin: The share of the ways of a maze, from 0 to 1, that are taken away.
+        name: The name of the instance; by default it is made from the arguments.
+        compass: Whether to note, after each step, the compass slot of the gateway where the agent
+            stands.
+        odometry: If given, how far each step led is noted, in hundredths of a way of a grid or a
+            lattice, or in the units of a file. The errors are at most so many percent of the way,
             drawn with the seed. The truth is consistent with a drift of so many percent.
-        lengths: whether the length of each step is noted, in the same units.
+        lengths: Whether to note the length of each step, in the same units.
 
     Returns:
-        The instance: ``experience``, ``truth`` (the dstate after each step in the real map),
-        ``name``, ``header``, and ``text()``, the file.
+        The instance, with ``experience``, ``truth`` (the dstate after each step in the real map),
+        ``name``, ``header``, and ``text()``, which is the file.
 
     Raises:
-        TypeError: something else than a world or a route.
-        ValueError: an unknown world, no rows and columns, or a number that cannot be.
-        InputError: what cannot be walked, or is too large: more than 100,000 places, or a tour
-            where an odd number of ways meets in more than 1500 places; odometry where the ways
-            do not fit into a plane, as on a torus.
+        TypeError: ``world`` is neither a name nor an environment, or ``route`` is not a text.
+        ValueError: The world is not known, its rows and columns are missing, or a number is out of
+            its range.
+        InputError: The route cannot be walked; the world has more than 100,000 places; a tour is
+            asked for where an odd number of ways meets in more than 1500 places; or odometry is
+            asked for where the ways do not fit into a plane, as on a torus.
     """
     demand_text("route", route, "ESSENN")
     thin, signs, seed = share("thin", thin), share("signs", signs), whole_if_given("seed", seed, 0)

@@ -18,34 +18,38 @@ def read_log(
     straight: float | None = None,
     unit: float | None = None,
 ) -> Log:
-    """Read a log of bearings: CSV, or JSON lines, one row for each visit
-    (``docs/logs-of-explorers.md`` names the columns).
+    """Read a log of bearings: CSV, or JSON lines, with one row for each visit.
+
+    ``docs/logs-of-explorers.md`` names the columns. (The experience is that of the paper, section
+    II.)
 
     Parameters:
-        path: the file; ``-`` is standard input.
-        slots: the number of directions at a place, even; by default the fewest that fit the
-            bearings, or 360.
-        tolerance: by how many slots bearings may be wrong; by default 0 if the bearings fit the
-            slots, else it is measured where the log surely comes to a place again.
-        frame: ``arrival`` if bearings count from the way back, ``north`` if they count from north;
-            by default ``north`` if there are compass letters.
-        facing: where bearing 0 is in the frame of the arrival: ``back`` or ``ahead``.
-        straight_ways: by how many degrees a way bends at most from one place to the next; by this
-            the exits of arrival are found in the frame ``north``, where they are not told.
-        straight: by how many degrees two exits of a place that are on one path may be off being
-            opposite; by default those in opposite slots are on one path, or the limit is chosen
-            where no slots fit.
-        unit: how much of the lengths of the log is one unit of the instance; by default 1, or 0.01
-            if some are fractions.
+        path: The file; ``-`` is standard input.
+        slots: The number of directions at a place, an even number; by default the smallest that
+            fits the bearings, or 360 if none does.
+        tolerance: By how many slots bearings may be wrong; by default 0 if the bearings fit the
+            slots, otherwise it is measured where the log surely comes to a place again.
+        frame: ``arrival`` if bearings count from the exit by which one arrived, ``north`` if they
+            count from north; by default ``north`` if there are compass letters, otherwise
+            ``arrival``.
+        facing: Where bearing 0 is in the frame ``arrival``: ``back`` or ``ahead``.
+        straight_ways: By how many degrees a way bends at most from one place to the next. In the
+            frame ``north`` this tells the exit by which one arrived, where the log does not.
+        straight: By how many degrees two exits of a place may be off from being opposite if they
+            are on one path. By default those in opposite slots are on one path, or the limit is
+            chosen if no number of slots fits.
+        unit: Which length of the log is one unit of the instance; by default 1, or 0.01 if some
+            lengths are fractions.
 
     Returns:
-        The log: ``experience``, ``chosen`` (what was chosen, in words, or None), ``warnings``, and
-        ``text()``, the instance file.
+        The log, with ``experience``, ``chosen`` (what was chosen, in words, or None), ``warnings``,
+        and ``text()``, which is the instance file.
 
     Raises:
-        TypeError: no path.
-        ValueError: a number that cannot be, an unknown frame.
-        InputError: the file cannot be read, or is no log; one line with file, line, step and fault.
+        TypeError: ``path`` is not the path of a file.
+        ValueError: A number is out of its range, or ``frame`` or ``facing`` is not known.
+        InputError: The file cannot be read, or is not a log. The message is one line that names the
+            file, the line, the step and the fault.
     """
     if frame not in (None, *FRAMES):
         raise ValueError(f"frame={frame!r}: it is {' or '.join(FRAMES)}")

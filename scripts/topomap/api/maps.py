@@ -22,13 +22,12 @@ if TYPE_CHECKING:
 
 
 class Map:
-    """A hypothesis: a topological map, and the way of the agent in it (the paper, sections II
-    and III).
+    """A hypothesis: a topological map, and the agent's way in it (the paper, sections II and III).
 
-    A place is the number of the step in which the agent was there first; a gateway is a pair
-    ``(place, slot)``, slots counted clockwise from 0 to ``slots - 1``. Nothing of a map can be
+    A place is the number of the step in which the agent was there first. A gateway is a pair
+    ``(place, slot)``; slots are counted clockwise from 0 to ``slots - 1``. Nothing of a map can be
     changed. Two maps of one experience are equal if the agent is at the same place and gateway
-    after each step, and the same is disbelieved; in a notebook a map is shown as a drawing.
+    after each step, and if they contradict the same views. A notebook shows a map as a drawing.
     """
 
     def __init__(
@@ -42,10 +41,17 @@ class Map:
         name: str = "",
         noisy: bool = False,
     ):
-        """The map of what was found in an experience: the ``number``-th of ``many`` (0: how many is
-        not known), which are all that there are if ``whole``. ``name`` says where the experience
-        is from; ``noisy`` tells that views were allowed to be wrong; ``document`` then says which
-        were."""
+        """Make the map of what was found in an experience.
+
+        Parameters:
+            experience: What the agent saw and did.
+            found: What was found.
+            number: The number of the map among those that were found, from 1.
+            many: How many maps were found; 0 if that is not known.
+            whole: Whether these are proved to be all maps.
+            name: Where the experience is from, for the title of a drawing.
+            noisy: Whether views were allowed to be wrong; ``document`` then says which were.
+        """
         self._seen, self._found = experience, found
         self._number, self._many, self._whole = number, many, whole
         self._name, self._noisy = name, noisy
@@ -70,12 +76,12 @@ class Map:
 
     @property
     def places(self) -> dict[Place, list[int]]:
-        """The gateways of each place: their slots, in order."""
+        """The gateways of each place, as a list of their slots in order."""
         return {place: sorted(star) for place, star in self._world.stars.items()}
 
     @property
     def landmarks(self) -> dict[Place, list[str]]:
-        """The landmarks of each place, in order, as the instance writes them."""
+        """The landmarks of each place in order, as an instance writes them."""
         return {place: sorted(self._world.landmarks[place]) for place in self._world.stars}
 
     @property
@@ -85,48 +91,54 @@ class Map:
 
     @property
     def paths(self) -> list[list[Gateway]]:
-        """Each path as its places in order, each with the slot in which it is left ahead."""
+        """Each path as its places in order, each with the slot by which the path goes on."""
         return self._world.paths()
 
     @property
     def faces(self) -> list[list[Gateway]]:
-        """Each face as the gateways by which a walk round it leaves; one empty face if there
-        are no links (the paper, Figure 3)."""
+        """Each face as the gateways by which a walk round it leaves (the paper, Figure 3).
+
+        If there are no links, there is one empty face.
+        """
         return self._world.faces()
 
     @property
     def genus(self) -> int:
-        """The genus: 0 if the map is planar."""
+        """The genus; it is 0 if the map is planar."""
         return self._world.genus()
 
     @property
     def pending(self) -> list[Gateway]:
-        """The gateways without a link (the paper, section III.B)."""
+        """The gateways that have no link (the paper, section III.B)."""
         return self._world.pending()
 
     @property
     def at(self) -> tuple[DState, ...]:
-        """The dstate after each step, from 0: the place where the agent is, and the gateway
-        where it stands."""
+        """The dstate after each step from 0: the place of the agent, and its gateway there."""
         return self._found.at
 
     @property
     def kind(self) -> str:
-        """What the map is: "consistent"; "best" or "optimal", which is said of no map of which
-        it is not proved; "best so far", if no closed map is consistent; or "not proved to be
-        best"."""
+        """What the map is.
+
+        It is "consistent"; "best" or "optimal", if that is proved; "best so far", if no closed map
+        is consistent; or "not proved to be best".
+        """
         unproved = not self.proved and self._found.kind in ("best", *BEST)
         return UNPROVED if unproved else self._found.kind
 
     @property
     def cost(self) -> tuple[int, ...]:
-        """What was minimised, most important first; empty if nothing was."""
+        """What was minimised, the most important number first; empty if nothing was."""
         return self._found.cost
 
     @cached_property
     def exceptions(self) -> list[NamedException]:
-        """What is not consistent about the boundaries: paths that meet twice, places that are left
-        and right of a path, and, without the path axiom, paths that hold a place twice."""
+        """The exceptions to consistent boundaries.
+
+        They are paths that meet twice, places that are both left and right of a path and, without
+        the path axiom, paths that contain a place twice.
+        """
         return exceptions_of(self._corrected, self.at)
 
     @property
@@ -136,33 +148,48 @@ class Map:
 
     @property
     def misread(self) -> tuple[Misread, ...]:
-        """What the map disbelieves: of each misreading the step, and the gateway (a slot
-        clockwise of the gateway stood at) or landmark that was missed or imagined."""
+        """What the map contradicts.
+
+        Each misreading has the step, and the gateway (a slot, counted clockwise from the gateway
+        where the agent stands) or the landmark that was missed or imagined.
+        """
         return self._found.misread
 
     def to_networkx(self) -> "MultiGraph[int]":
-        """The map as a graph of networkx, the same that ``topomap export`` writes.
+        """Convert the map to a graph of networkx, the same that ``topomap export`` writes.
 
-        A node is a place, with its ``gateways`` and ``landmarks``; an edge is a link, with its
-        ``ends`` (two gateways) and the ``steps`` that travel it from the first to the second,
-        and ``back``. Of the graph ``at`` is ``[[T, P, S], ...]``.
+        A node is a place, with its ``gateways`` and ``landmarks``. An edge is a link, with its two
+        gateways as ``ends``, the ``steps`` that travel it from the first to the second, and the
+        steps that travel it ``back``. The attribute ``at`` of the graph is ``[[T, P, S], ...]``.
+
+        Returns:
+            The graph.
         """
         from topomap.exchange.exports import graph_of
 
         return graph_of(self._scene())
 
     def draw(self, file: str | Path, *, timeout: float | None = DRAWING) -> None:
-        """Draw the map into a file, which is SVG, PNG or PDF by the ending of its name: the same
-        bytes for the same map, if there is time enough. What cannot be drawn well in ``timeout``
-        seconds is drawn plainly, and the title says so. Raises ValueError if that is no number of
-        seconds, and InputError, one line, if the file has another ending, cannot be written, or the
-        extra ``draw`` is not installed."""
+        """Draw the map into a file: SVG, PNG or PDF, by the ending of its name.
+
+        If there is enough time, one map always gives the same bytes.
+
+        Parameters:
+            file: The file to write.
+            timeout: The number of seconds that the drawing may take. What cannot be drawn well in
+                this time is drawn plainly, and the title says so.
+
+        Raises:
+            ValueError: ``timeout`` is not a number of seconds.
+            InputError: The file has another ending or cannot be written, or the extra ``draw`` is
+                not installed. The message is one line.
+        """
         from topomap.api.draw import save
 
         save(self._scene(), file, Watch(seconds("timeout", timeout)).late)
 
     def _repr_svg_(self) -> str | None:
-        """What a notebook shows; without the extra ``draw`` it shows the line of ``repr``."""
+        """Draw the map for a notebook, which shows ``repr`` if the extra ``draw`` is missing."""
         from topomap.runtime.extras import lacking
 
         return None if lacking("draw") else self._drawn
@@ -174,7 +201,11 @@ class Map:
         return svg(self._scene(), Watch(DRAWING).late)
 
     def document(self) -> dict[str, Any]:
-        """The map as ``topomap solve --json`` writes it (``docs/formats.md`` names the keys)."""
+        """Convert the map to what ``topomap solve --json`` writes of it.
+
+        Returns:
+            A dictionary, whose keys ``docs/formats.md`` explains.
+        """
         told = answers.map_json(self._world, self.at)
         if self._noisy or self.misread:
             told["misread"] = answers.misread_json(self._seen, self.misread)

@@ -1,7 +1,5 @@
-"""What the public functions have in common: the parts of the theory, as keyword arguments, and
-the checks of what they are given."""
+"""What the public functions have in common: keyword arguments, and checks of arguments."""
 
-import difflib
 import os
 from collections.abc import Collection, Mapping, Sequence
 from typing import Any, TypedDict
@@ -12,21 +10,29 @@ from topomap.model.query import Query
 from topomap.model.vocabulary import FORMS, PARTS, unstated
 from topomap.questions.statements import parse_statement, statement_text
 from topomap.runtime.checks import flag, percent, seconds, shown, whole_if_given
+from topomap.runtime.near import meant
 from topomap.runtime.watch import Watch
 from topomap.worlds.environment import Environment, environment
 from topomap.worlds.senses import Senses
 
 
 class Parts(TypedDict, total=False):
-    """What maps are to have (the paper, sections II to IV). Each is a part of ``encodings/``:
+    """The demands on maps and the preferences among them (the paper, sections II to IV).
 
-    ``planar``: a new link joins two gateways of one face; ``euler``: the same, by Euler's
-    formula; ``closed``: no gateway is pending; ``travelled``: every path holds two places or
-    more; ``boundary``: no place is left and right of a path, or on it and beside it;
-    ``perpendicular``: two paths meet once at most, and no three make a triangle; ``genus``:
-    the least genus is preferred; ``exceptions``: then the fewest exceptions to consistent
-    boundaries; ``minimal``: then the fewest paths, then the fewest places. And ``no_path_axiom``: a
-    path may hold a place twice, and may be circular.
+    Each is a part of ``encodings/``.
+
+    Attributes:
+        planar: Each new link joins two gateways of one face.
+        euler: The map is planar by Euler's formula.
+        closed: No gateway is pending.
+        travelled: Every path has two places or more.
+        boundary: No place is both left and right of a path, or both on it and beside it.
+        perpendicular: Two paths meet at most once, and no three make a triangle.
+        genus: Maps with the least genus are preferred.
+        exceptions: Of these, maps with the fewest exceptions to consistent boundaries are
+            preferred.
+        minimal: Of these, maps with the fewest paths, then the fewest places, are preferred.
+        no_path_axiom: A path may contain a place twice, and may be circular.
     """
 
     planar: bool
@@ -42,7 +48,7 @@ class Parts(TypedDict, total=False):
 
 
 class OnlineParts(TypedDict, total=False):
-    """What maps are to have that are followed step by step; see ``Parts``."""
+    """The demands on maps that are followed step by step; ``Parts`` explains them."""
 
     planar: bool
     no_path_axiom: bool
@@ -57,15 +63,19 @@ def query_of(
     noise: int | None = None,
     allowed: Collection[str] = tuple(PARTS),
 ) -> Query:
-    """The query that asks for the parts that are true. Raises ValueError, naming the known ones,
-    if one is not among those that are allowed, and if something else is not what it may be."""
+    """Make the query that asks for the parts that are true.
+
+    Raises:
+        ValueError: A part is not among those that are allowed (the message names these), or another
+            argument is out of its range.
+    """
     asked = frozenset(asked_of(parts, allowed))
     if encoding not in FORMS:
         raise ValueError(f"encoding={encoding!r}: it is {' or '.join(FORMS)}")
     if encoding == "paper" and (others := unstated(asked)):
         raise ValueError(f"encoding='paper' does not state {', '.join(others)}")
     if encoding == "paper" and noise is not None:
-        raise ValueError("encoding='paper' does not go with noise")
+        raise ValueError("encoding='paper' cannot be combined with noise")
     return Query(
         asked,
         whole_if_given("bound", bound, 1),
@@ -76,36 +86,54 @@ def query_of(
 
 
 def asked_of(parts: Mapping[str, Any], allowed: Collection[str]) -> list[str]:
-    """The parts that are true. Raises ValueError, naming the known ones, if one is not among those
-    that are allowed, or is neither true nor false."""
+    """List the parts that are true.
+
+    Raises:
+        ValueError: A part is not among those that are allowed (the message names these), or is
+            neither true nor false.
+    """
     for part in parts:
         if part not in allowed:
-            near = difflib.get_close_matches(part, allowed, 1)
-            hint = f"; did you mean {near[0]}?" if near else ""
+            near = meant(part, allowed)
+            hint = f"; {near}" if near else ""
             known = ", ".join(allowed)
             raise ValueError(f"{part!r} is not one of the parts {known}{hint}")
     return [part for part, value in parts.items() if flag(part, value)]
 
 
 def demand_experience(experience: object) -> None:
-    """Raises TypeError if what was given is no experience, such as the name of a file."""
+    """Refuse what is not an experience, such as the name of a file.
+
+    Raises:
+        TypeError: It is not an experience.
+    """
     if not isinstance(experience, Experience):
         told = shown(experience)
         raise TypeError(f"an Experience is wanted, which topomap.read(path) gives, not {told}")
 
 
 def demand_pairs(experience: object, where: str) -> None:
-    """Raises ValueError if more is taken for granted than which visits are of one place: the rest
-    is put to the encodings, and what ``where`` names does not ask them."""
+    """Refuse assumptions other than which visits are of one place.
+
+    The encodings get all other assumptions, and what ``where`` names does not use the encodings.
+
+    Raises:
+        ValueError: There is another assumption.
+    """
     if isinstance(experience, Experience) and experience.assumed:
         known = "same(T,U) and not same(T,U)"
         raise ValueError(f"{where} knows no statement that is taken for granted but {known}")
 
 
 def begin(experience: Experience, timeout: float | None, noisy: bool = False) -> Watch:
-    """The watch of a call, once an experience that may have been made in Python is checked. Raises
-    TypeError if it is no experience; InputError, one line, if it cannot be, where ``noisy``
-    allows what may be a misreading; ValueError if the time limit is no number of seconds."""
+    """Check an experience, which may have been made in Python, and make the watch of the call.
+
+    Raises:
+        TypeError: It is not an experience.
+        InputError: The experience is impossible; ``noisy`` allows what may be a misreading. The
+            message is one line.
+        ValueError: The time limit is not a number of seconds.
+    """
     demand_experience(experience)
     limit = seconds("timeout", timeout)
     measured = experience.drift, experience.stretch, experience.tolerance
@@ -116,13 +144,21 @@ def begin(experience: Experience, timeout: float | None, noisy: bool = False) ->
 
 
 def demand_text(name: str, value: object, example: str) -> None:
-    """Raises TypeError if what was given is no text."""
+    """Refuse what is not a text.
+
+    Raises:
+        TypeError: It is not a text.
+    """
     if not isinstance(value, str):
         raise TypeError(f"{name}: a text is wanted, such as {example!r}, not {shown(value)}")
 
 
 def path_of(path: object) -> str:
-    """The path of a file. Raises TypeError if it is none."""
+    """Check the path of a file.
+
+    Raises:
+        TypeError: It is not a path.
+    """
     if isinstance(path, str):
         return path
     if isinstance(path, os.PathLike) and isinstance(named := os.fspath(path), str):
@@ -131,14 +167,23 @@ def path_of(path: object) -> str:
 
 
 def senses_of(compass: bool, odometry: float | None, lengths: bool, seed: int) -> Senses:
-    """What is measured besides views. Raises ValueError."""
+    """Collect what is measured besides views.
+
+    Raises:
+        ValueError: A number is out of its range.
+    """
     error = None if odometry is None else percent("odometry", odometry)
     return Senses(flag("compass", compass), error, flag("lengths", lengths), seed)
 
 
 def world_of(world: str | Environment, size: Sequence[int], thin: float, seed: int) -> Environment:
-    """The environment that is named, or that was made before. Raises TypeError if it is neither,
-    ValueError if it is not known or of a size that cannot be, InputError if it is too large."""
+    """Make the environment that is named, or return the one that was given.
+
+    Raises:
+        TypeError: It is neither a name nor an environment.
+        ValueError: The name is not known, or the size is impossible.
+        InputError: The environment is too large.
+    """
     if isinstance(world, Environment):
         return world
     if not isinstance(world, str):

@@ -16,26 +16,28 @@ def read(
     stretch: int | None = None,
     tolerance: int | None = None,
 ) -> Experience:
-    """The experience in an instance file (the paper, section II).
+    """Read the experience in an instance file (the paper, section II).
 
     Parameters:
-        path: a file of facts ``slots/1``, ``view/2``, ``turn/2``, and optionally ``landmark/2``,
-            ``drop/1``, ``pick/1``, ``marker/1``, ``compass/2``, ``shift/3``, ``length/2``,
-            ``straight/3``, ``same/2`` and ``apart/2``; ``-`` is standard input.
-        noisy: allow what can only be a misreading: a turn to a gateway that was not seen, a view
-            without slot 0. For ``solve(..., noise=K)``.
-        drift, stretch: how far shifts and lengths may be wrong, in percent; 10 by default.
-        tolerance: by how many slots bearings may be wrong; 0 by default, and with ``noisy``.
+        path: A file of the facts ``slots/1``, ``view/2``, ``turn/2``, and optionally
+            ``landmark/2``, ``drop/1``, ``pick/1``, ``marker/1``, ``compass/2``, ``shift/3``,
+            ``length/2``, ``straight/3``, ``same/2`` and ``apart/2``; ``-`` is standard input.
+        noisy: Whether to allow what can only be a misreading, such as a turn to a gateway that was
+            not seen, or a view without slot 0. ``solve(..., noise=K)`` needs it.
+        drift: By how many percent of the way shifts may be wrong; 10 by default.
+        stretch: By how many percent lengths of one way may differ; 10 by default.
+        tolerance: By how many slots bearings may be wrong; 0 by default, and always 0 with
+            ``noisy``.
 
     Returns:
-        The experience: ``slots`` directions a place, ``views`` and ``landmarks`` after each step
-        from 0, ``turns`` of each step from 1, in slots clockwise.
+        The experience, with the number of ``slots`` of a place, the ``views`` and ``landmarks``
+        after each step from 0, and the ``turns`` of each step from 1, in slots clockwise.
 
     Raises:
-        TypeError: no path.
-        ValueError: a drift, a stretch or a tolerance that is no whole number, 0 or more.
-        InputError: the file cannot be read or is no instance; the message is one line that names
-            file, line, step and fault.
+        TypeError: ``path`` is not the path of a file.
+        ValueError: ``drift``, ``stretch`` or ``tolerance`` is not a whole number of 0 or more.
+        InputError: The file cannot be read, or is not an instance. The message is one line that
+            names the file, the line, the step and the fault.
     """
     given = {"drift": drift, "stretch": stretch, "tolerance": tolerance}
     measured = (whole_if_given(name, value, 0) for name, value in given.items())

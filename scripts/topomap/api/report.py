@@ -15,7 +15,7 @@ from topomap.runtime.watch import Watch
 
 @dataclass(frozen=True)
 class Page:
-    """A page of one chapter for each exploration."""
+    """A page with one chapter for each exploration."""
 
     asked: Asked
     chapters: list[Chapter]
@@ -52,10 +52,16 @@ def report_under(
     maps_from: str | None = None,
     known: Sequence[str] = (),
 ) -> Page:
-    """Look at explorations, each with its name, under the watch of a command, for so many seconds
-    in all. At most so many (``most``) of the best maps are drawn of each; or of the maps in a
-    file, ``maps_from``, which goes with one exploration; ``known`` holds the options by which more
-    is known of these than their files tell. Raises InputError, one line."""
+    """Make the page about explorations under the watch of a command.
+
+    ``seen`` holds the explorations, each with its name, and ``seconds`` is the time for all of
+    them. At most ``most`` of the best maps of each are drawn; or those in the file ``maps_from``,
+    which is allowed for one exploration only. ``known`` holds the options by which more is known of
+    the explorations than their files tell.
+
+    Raises:
+        InputError: The file of maps cannot be read. One line.
+    """
     given = None if maps_from is None else given_maps(maps_from, *seen[0], query)
     end = time.monotonic() + seconds
     chapters = []

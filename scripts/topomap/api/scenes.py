@@ -1,5 +1,7 @@
-"""The maps that ``draw``, ``show`` and ``export`` choose from: the best ones of an instance, or
-those in a file of maps."""
+"""The maps that ``draw``, ``show`` and ``export`` choose from.
+
+They are the best maps of an instance, or those in a file of maps.
+"""
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
@@ -21,16 +23,19 @@ from topomap.runtime.watch import Watch
 from topomap.worlds.files import Loaded, load
 from topomap.worlds.plan import Reading
 
-MANY = 1000  # optimal maps; if there are more, they are not all looked for
-# The share of the time for the search of optimal maps; and if none is found then, the share of the
-# rest for that of a closed one, before any map is taken.
+MANY = 1000  # if there are more optimal maps, not all of them are looked for
+# The share of the time for the search for optimal maps. If none is found, this is the share of the
+# rest of the time for the search for a closed map, before any map is taken.
 OPTIMAL, CLOSED = 0.6, 0.6
 
 
 @dataclass(frozen=True)
 class Searched(Sequence[Scene]):
-    """The maps that were found in an experience from there, each made into a scene when it is asked
-    for; they are all that there are if ``whole``. ``many`` is how many there are (0: not known)."""
+    """The maps that were found in an experience, each made into a scene when it is asked for.
+
+    They are all that there are if ``whole`` is true. ``many`` is their number (0 if it is not
+    known).
+    """
 
     experience: Experience
     name: str
@@ -59,8 +64,11 @@ class Searched(Sequence[Scene]):
 
 
 class Choice(NamedTuple):
-    """The maps to choose from; ``fault`` says why they may not be all of them, of maps in a file
-    only where there is none. ``searched``: they were searched for, and not read."""
+    """The maps to choose from.
+
+    ``fault`` says why they may not be all; for maps in a file it does so only if there is none.
+    ``searched`` tells whether they were searched for, and not read.
+    """
 
     scenes: Sequence[Scene]
     fault: str | None
@@ -75,16 +83,19 @@ def scenes_under(
     read: Callable[[str, str], Experience] = parse,
     number: int = 1,
 ) -> Choice:
-    """The maps of a file, under the watch of a command.
+    """Find the maps of a file under the watch of a command.
 
-    Of an instance they are the optimal ones, or the best so far, that have the parts of the
-    query, or with a file of maps ``given`` those in it; of a text of ``solve --json`` those in it.
-    ``read`` makes the experience of the text of an instance and its name. Raises InputError, one
-    line.
+    Of an instance these are the optimal maps, or those that are best so far, that have the parts of
+    the query; or, with a file of maps ``given``, those in it. Of a file that ``solve --json`` wrote
+    they are the maps in it. ``read`` makes the experience from the text of an instance and its
+    name.
 
-    If no optimal map is found in time, some map is taken that is not proved to be best.
-    The maps of an instance are in order, but if there are more than ``MANY``: then they are as they
-    were found, and as many as are needed for one of some ``number``.
+    If no optimal map is found in time, some map is taken that is not proved to be best. The maps of
+    an instance are in order. If there are more than ``MANY``, they are in the order in which they
+    were found, and only as many as are needed for the map of that ``number``.
+
+    Raises:
+        InputError: The file cannot be read, or is neither an instance nor a file of maps. One line.
     """
     if given is not None:
         return _given(path, query, given)
@@ -109,9 +120,13 @@ def scenes_under(
 
 
 def drawn_like(scene: Scene, file: str) -> tuple[Scene, str]:
-    """A scene whose places are where they are in a file of a world; and what there is to say of
-    that. Where it is not known which place is which, the scene stays as it is. Raises InputError,
-    one line."""
+    """Place a scene like the file of a world, and say what there is to say about that.
+
+    If it is not known which place is which, the scene stays as it is.
+
+    Raises:
+        InputError: The file cannot be read. One line.
+    """
     ready()
     from topomap.drawing.likeness import likeness
 
@@ -129,15 +144,20 @@ def drawn_like(scene: Scene, file: str) -> tuple[Scene, str]:
 
 
 def _readings(file: str, slots: int) -> Iterator[Loaded]:
-    """The world in a file, read in each way in which it may have been read when the map was made:
-    with the slots that are chosen, or so many, and with its loops or without them. Raises
-    InputError if it cannot be read in any of them."""
+    """Read the world in a file in each way in which it may have been read for the map.
+
+    The number of slots is the one that is chosen, or ``slots``; and the world has its loops, or has
+    none.
+
+    Raises:
+        InputError: The file can be read in none of these ways. One line.
+    """
     faults, given = [], 0
     for number in range(4):
         chosen, loops = number % 2 == 0, number > 1
         try:
             loaded = load(file, Reading(loops=loops), None if chosen else slots, two_way=True)
-        except InputError as fault:  # a loop may have no course, and so many slots may be too few
+        except InputError as fault:  # a loop may have no course, and the slots may be too few
             faults.append(fault)
             continue
         given += 1
@@ -149,7 +169,7 @@ def _readings(file: str, slots: int) -> Iterator[Loaded]:
 
 
 def _some(watch: Watch, experience: Experience, query: Query) -> list[Found]:
-    """A map that need not be the best, closed if there is time to find one; or none."""
+    """Find a map that need not be the best, or none; it is closed if time allows."""
     for parts, share in (("closed",), CLOSED), ((), 1.0):
         with watch.deadline.sooner(share):
             answer = solve_under(watch, experience, query.having(*parts), limit=1)
@@ -161,12 +181,12 @@ def _some(watch: Watch, experience: Experience, query: Query) -> list[Found]:
 
 
 def _unless_limit(answer: Answer) -> str | None:
-    """Why an answer is partial, if it is not for want of maps that nobody asked for."""
+    """Say why an answer is partial, unless only maps are missing that nobody asked for."""
     return None if answer.fault == "limit" else answer.fault
 
 
 def _given(path: str, query: Query, given: str) -> Choice:
-    """The maps of an instance that are given in a file."""
+    """Read the maps of an instance that are given in a file."""
     _refuse(given, query)
     if path == given == "-":
         raise InputError("-: standard input is the instance or the maps, not both")
@@ -180,13 +200,17 @@ def _given(path: str, query: Query, given: str) -> Choice:
 
 
 def _refuse(path: str, query: Query) -> None:
-    """Raise InputError if anything is asked of maps that are there."""
+    """Refuse demands on maps that were given.
+
+    Raises:
+        InputError: There is such a demand.
+    """
     if query != Query():
         raise InputError(f"{path}: these are maps, so parts, bound and horizon cannot be used")
 
 
 def _missing(documents: Sequence[maps.Document], found: Sequence[Scene]) -> str | None:
-    """Why there is no map in documents, unless that is all that there is to find."""
+    """Say why there is no map in documents, unless it is known that there is none to find."""
     if found:
         return None
     cut = [document for document in documents if not document.whole]

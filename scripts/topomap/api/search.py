@@ -1,4 +1,4 @@
-"""The paper's own search: the figures of its tree, and the first closed map by its policy."""
+"""The paper's own search: the figures of its tree, and the first closed map that it finds."""
 
 from dataclasses import dataclass
 
@@ -13,9 +13,11 @@ from topomap.search import traversal
 
 
 def count_by_search_under(watch: Watch, experience: Experience, query: Query, order: str) -> Counts:
-    """The figures of the search tree, whose nodes are passed in that order, ``breadth`` or
-    ``depth``, under the watch of a command. If the work was cut, ``at_least`` may have what
-    is known."""
+    """Count the search tree without clingo, under the watch of a command.
+
+    ``order`` is the order in which the nodes are visited, ``breadth`` or ``depth``. If the work was
+    cut short, ``at_least`` may have what is known.
+    """
     node = traversal.root(experience, query)
     tally = Tally(node.experience.steps)
     with Attempt() as attempt:
@@ -27,8 +29,11 @@ def count_by_search_under(watch: Watch, experience: Experience, query: Query, or
 
 @dataclass(frozen=True)
 class FirstClosed:
-    """The first closed map that the best-first search ``found``, if it did, after so many
-    ``nodes``; ``fault`` says why it was cut, if it was."""
+    """The first closed map of the best-first search, if it found one, as ``found``.
+
+    ``nodes`` is the number of nodes that were searched, and ``fault`` says why the search was cut
+    short, if it was.
+    """
 
     found: Found | None
     nodes: int
@@ -36,8 +41,10 @@ class FirstClosed:
 
 
 def first_closed_under(watch: Watch, experience: Experience, query: Query) -> FirstClosed:
-    """The paper's best-first search, with backtracking while the map is not closed, under the
-    watch of a command."""
+    """Search best-first, as the paper does, under the watch of a command.
+
+    The search backtracks as long as the map is not closed.
+    """
     nodes = 0
     found = None
     with Attempt() as attempt:

@@ -20,13 +20,16 @@ from topomap.worlds.environment import Environment
 from topomap.worlds.instance import NOTHING
 from topomap.worlds.senses import Senses
 
-STEPS = 20  # for each way
+STEPS = 20  # the default number of steps for each way
 
 
 @dataclass(frozen=True, repr=False)
 class Simulation(Reply):
-    """What came of a robot in the environment of that name. It is ``complete`` if the robot came to
-    an end, so that more walking would tell it nothing, and the walks for comparison did, too."""
+    """What came of a robot in an environment.
+
+    It is ``complete`` if the robot came to an end, so that more walking would tell it nothing, and
+    if the walks for comparison came to an end, too.
+    """
 
     name: str
     outcome: Outcome
@@ -38,7 +41,7 @@ class Simulation(Reply):
 
     @cached_property
     def maps(self) -> list[Map]:
-        """The best maps of that, in order."""
+        """The best maps of the experience, in order."""
         found, whole = self.outcome.maps, self.outcome.whole
         return [
             Map(self.experience, one, number, len(found), whole, name=self.name)
@@ -47,43 +50,58 @@ class Simulation(Reply):
 
     @property
     def end(self) -> str:
-        """How it ended: "settled" (one closed map is optimal), "bisimilar" (several, which no
-        walk tells apart), "no map", "steps" (as many as it may walk), or why it was cut."""
+        """How the exploration ended.
+
+        It is "settled" if one closed map is optimal, "bisimilar" if there are several that no walk
+        tells apart, "no map", "steps" if the robot walked as many steps as it may, or the reason
+        why it was cut short.
+        """
         return self.outcome.end
 
     @property
     def truth(self) -> bool | None:
-        """Whether the real map is among the maps; None if that is open, as the robot could go no
-        further."""
+        """Whether the real map is among the maps; None if that is open.
+
+        It is open where the robot could go no further.
+        """
         return self.outcome.truth
 
     @property
     def steps(self) -> int:
-        """How many steps it walked."""
+        """How many steps the robot walked."""
         return self.outcome.steps
 
     @property
     def tour(self) -> int | None:
-        """How many steps a tour over every way takes, by one who knows the map; None if the
-        world is too large for that, or it was cut."""
+        """How many steps a tour over every way takes somebody who knows the map.
+
+        It is None if the world is too large for that, or if the computation was cut short.
+        """
         return self.outcome.tour
 
     @property
     def random(self) -> int | None:
-        """How many steps random walks take until they have gone every way: the median; None if
-        most are too long to be walked to the end, or it was cut."""
+        """The median number of steps that random walks take until they have gone every way.
+
+        It is None if most of them are too long to be walked to the end, or if the computation was
+        cut short.
+        """
         return self.outcome.random
 
     @property
     def fault(self) -> str | None:
-        """Why the robot did not come to an end, or why ``tour`` or ``random`` is missing; None if
-        neither is so."""
+        """Why the simulation is not whole; None if it is.
+
+        The robot did not come to an end, or ``tour`` or ``random`` is missing.
+        """
         return self.outcome.fault
 
     def document(self) -> dict[str, Any]:
+        """The simulation as ``topomap simulate --json`` writes it."""
         return {"environment": self.name, **self.outcome.document()}
 
     def lines(self) -> Iterator[str]:
+        """The simulation as the lines that ``topomap simulate`` prints."""
         return self.outcome.lines(self.name)
 
 
@@ -106,37 +124,47 @@ def simulate(
     stretch: int | None = None,
     **parts: Unpack[Parts],
 ) -> Simulation:
-    """Let a robot explore a world until it has one closed optimal map, or no walk can tell its
-    best maps apart; then hold these against the truth (the paper, section IV).
+    """Let a robot explore a world that it does not know (the paper, section IV, has such worlds).
+
+    It explores until it has one closed optimal map, or until no walk can tell its best maps apart.
+    Then these maps are compared with the real one.
 
     Parameters:
         world: ``grid``, ``torus``, ``cylinder``, ``crescents``, ``maze``, ``hexagons`` or
-            ``triangles``, with ``size``, its rows and columns; or an environment that was made
-            before.
-        start: the first place, such as ``0,2``; the smallest by default.
-        facing: the gateway stood at first, a slot; the smallest by default.
-        signs: the share of places, 0 to 1, that carry their own name as a landmark.
-        seed: for signs and maze.
-        thin: the share of the ways of a maze, 0 to 1, that are taken away.
-        steps: walk so many at most, 100,000 or fewer; 20 for each way by default.
-        marker: whether the robot carries a marker that it may put down.
-        bound: what it takes for granted: so many places at most.
-        timeout: stop after so many seconds, the walks for comparison too.
-        compass, odometry, lengths: what it measures besides views, as in ``generate``.
-        drift, stretch: how far it takes its shifts and lengths to be wrong, in percent; 10 by
-            default, or as much as ``odometry``.
-        parts: what it takes for granted: ``planar``, ``perpendicular``; and ``no_path_axiom``, that
-            a path may hold a place twice, and may be circular.
+            ``triangles``; or an environment that was made before.
+        size: The rows and the columns of a world that is named.
+        start: The first place, such as ``0,2``; the smallest by default.
+        facing: The slot of the gateway where the robot stands at first; the smallest by default.
+        signs: The share of the places, from 0 to 1, that have their own name as a landmark.
+        seed: The seed of what is random: signs, mazes and the errors of the odometry.
+        thin: The share of the ways of a maze, from 0 to 1, that are taken away.
+        steps: The largest number of steps that the robot walks, 100,000 at most; by default 20 for
+            each way.
+        marker: Whether the robot carries a marker, which it may put down.
+        bound: The largest number of places, which the robot takes for granted.
+        timeout: The number of seconds after which the work stops; the walks for comparison are
+            included.
+        compass: Whether the robot notes the compass slot of the gateway where it stands, as for
+            ``generate``.
+        odometry: If given, the robot notes how far each step led, with errors of at most so many
+            percent of the way, as for ``generate``.
+        lengths: Whether the robot notes the length of each step, as for ``generate``.
+        drift: By how many percent of the way the robot takes its shifts to be wrong; by default 10,
+            or as many as ``odometry``.
+        stretch: By how many percent the robot takes its lengths of one way to differ; 10 by
+            default.
+        parts: What the robot takes for granted: ``planar``, ``perpendicular``; and
+            ``no_path_axiom``, by which a path may contain a place twice, and may be circular.
 
     Returns:
-        What came of it: ``end``, ``maps``, ``truth``, ``experience``, ``steps``, and for
-        comparison ``tour`` and ``random``. Where something was cut, ``fault`` says why.
+        What came of it, with ``end``, ``maps``, ``truth``, ``experience``, ``steps``, and for
+        comparison ``tour`` and ``random``. If something was cut short, ``fault`` says why.
 
     Raises:
-        TypeError: something else than a world.
-        ValueError: an unknown world or part, no rows and columns, or a number that cannot be.
-        InputError: a world that is too large (more than 100,000 places); no such place or
-            gateway.
+        TypeError: ``world`` is neither a name nor an environment.
+        ValueError: The world or a part is not known, rows and columns are missing, or a number is
+            out of its range.
+        InputError: The world has more than 100,000 places, or there is no such place or gateway.
     """
     query = query_of(parts, bound=bound, allowed=CHOSEN)
     thin, signs, seed = share("thin", thin), share("signs", signs), whole("seed", seed, 0)
@@ -164,7 +192,7 @@ def simulate_under(
     marker: bool,
     senses: Senses = NOTHING,
 ) -> Simulation:
-    """The same in an environment that was made, under the watch of a command."""
+    """Simulate a robot in an environment under the watch of a command."""
     there, dstate = start_of(world, start, facing)
     most = min(STEPS * len(there.map.links) // 2, MOST_STEPS) if steps is None else steps
     return Simulation(world.name, explored(there, dstate, query, watch, most, marker, senses))

@@ -1,4 +1,4 @@
-"""Enumerating the maps of an experience."""
+"""Enumerating the maps that are consistent with an experience."""
 
 from collections.abc import Generator
 from typing import Unpack
@@ -32,38 +32,46 @@ def solve(
     jobs: int = 1,
     **parts: Unpack[Parts],
 ) -> Answer:
-    """Enumerate the maps that are consistent with an experience (the paper, sections II, III).
+    """Enumerate the maps that are consistent with an experience (the paper, sections II and III).
 
     Parameters:
-        experience: what was seen and done.
-        optimal: closed maps with the fewest exceptions to consistent boundaries, then the fewest
-            paths, then the fewest places; if no map is closed, the best so far, pending gateways
-            allowed.
-        circumscribe: of the closed maps with consistent boundaries (or of all with these, if there
-            is no such map) those to which none is preferred, by set inclusion (the paper, section
-            II: the circumscription policy). A map is preferred to another one if its paths are
-            some but not all of the other one's, or if its paths are the same and its places are
-            some but not all of the other one's.
-        bound: the most places that a map may have.
-        horizon: the last step that counts.
-        noise: how many views may be wrong, as few as can be.
-        by: ``auto``: the way that suits, by how much work there is to do, never by time;
-            ``clingo``, or ``search``, the paper's search of the tree of hypotheses.
-        encoding: ``work``, or ``paper``, the rules as the paper states them (slow).
-        limit: stop after so many maps.
-        timeout: seconds of search after which it stops: they begin with the first map that is
-            asked for, and wait while the caller has control.
-        jobs: how many processes do the work; not with what minimises or circumscribes.
-        parts: what the maps are to have.
+        experience: What the agent saw and did.
+        optimal: Whether to give only the optimal maps. These are the closed maps with the fewest
+            exceptions to consistent boundaries, then the fewest paths, then the fewest places. If
+            no map is closed, the maps that are best so far are given; these may have pending
+            gateways.
+        circumscribe: Whether to give only the circumscribed maps (the paper, section II: the
+            circumscription policy). Of the closed maps with consistent boundaries, or of all maps
+            with consistent boundaries if none of them is closed, these are the ones to which no
+            other is preferred, by set inclusion. A map is preferred to another one if its paths are
+            a proper subset of the paths of the other one, or if the paths are the same and its
+            places are a proper subset of the places of the other one.
+        bound: The largest number of places that a map may have.
+        horizon: The last step that counts. By default all steps count.
+        noise: The largest number of views that may be wrong. As few as possible are taken to be
+            wrong.
+        by: The way to find the maps: ``clingo``; ``search``, which is the paper's search of the
+            tree of hypotheses; or ``auto``, which chooses the way that has less work to do, by
+            counted work and never by time.
+        encoding: The rules that clingo gets: ``work``, or ``paper``, which states the rules as the
+            paper does and is slow.
+        limit: The number of maps after which the search stops.
+        timeout: The number of seconds of search after which it stops. The time begins with the
+            first map that is asked for, and does not run while the caller has control.
+        jobs: The number of processes that share the work. Work that minimises or circumscribes
+            cannot be shared.
+        parts: The demands on the maps and the preferences among them, as keyword arguments such as
+            ``planar=True``; ``topomap.api.parts.Parts`` lists them.
 
     Returns:
-        The maps, as they are found.
+        The maps, which can be read while further maps are being found.
 
     Raises:
-        TypeError: no experience.
-        ValueError: an unknown part, way or encoding, a number that cannot be, or what does not go
-            together.
-        InputError: an experience that cannot be, one line that names step and fault.
+        TypeError: ``experience`` is not an Experience.
+        ValueError: A part, ``by`` or ``encoding`` is not known, a number is out of its range, or
+            two arguments cannot be combined.
+        InputError: The experience is impossible. The message is one line that names the step and
+            the fault.
     """
     query = query_of(parts, bound=bound, horizon=horizon, encoding=encoding, noise=noise)
     if not isinstance(by, str) or by not in WAYS:
@@ -79,11 +87,11 @@ def solve(
         }
         for name, asked in others.items():
             if asked:
-                raise ValueError(f"circumscribe does not go with {name}")
+                raise ValueError(f"circumscribe cannot be combined with {name}")
     if (flag("optimal", optimal) or circumscribe or query.optimizes) and jobs > 1:
-        raise ValueError("jobs: all maps are shared out, not the best ones")
+        raise ValueError("jobs: the search for all maps can be shared, not that for the best ones")
     if noise is not None and by == "search":
-        raise ValueError("noise does not go with by='search'")
+        raise ValueError("noise cannot be combined with by='search'")
     if by == "search":
         demand_pairs(experience, "by='search'")
     if encoding == "paper":
@@ -110,7 +118,10 @@ def solve_under(
     journal: Journal | None = None,
     crew: Crew = ALONE,
 ) -> Answer:
-    """The same of the maps of a query, under the watch of a command, which may have a journal of
-    the work and a crew for it."""
+    """Enumerate the maps of a query under the watch of a command.
+
+    The command may have a journal of the work, and a crew that shares it. Otherwise this is
+    ``solve``.
+    """
     coming = every(experience, query, watch, by, optimal, journal, crew, circumscribe, limit)
     return Answer(experience, query, coming, limit, watch, waits=False, optimal=optimal)

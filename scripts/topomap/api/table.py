@@ -1,4 +1,4 @@
-"""The paper's table (Figure 4), and what is beyond it."""
+"""The paper's table (Figure 4), and what lies beyond it."""
 
 import json
 import os
@@ -14,12 +14,15 @@ from topomap.runtime.watch import Attempt, Watch
 from topomap.solver.crews import crew as crew_of
 
 Row = dict[str, Any]
-Noted = Callable[[int, int], None]  # how many columns are counted, and of how many
+Noted = Callable[[int, int], None]  # it is told how many of all columns are counted
 
 
 class Table(Reply):
-    """The columns of a table that were counted, each a dictionary, of so ``many``; ``verdict`` is
-    what to say where all are, and nothing differs."""
+    """The columns of a table that were counted, each a dictionary.
+
+    ``many`` is the number of all columns. ``verdict`` is what is said if all were counted and
+    nothing differs.
+    """
 
     def __init__(self, rows: list[Row], many: int, verdict: str, fault: str | None):
         super().__init__(fault)
@@ -31,6 +34,7 @@ class Table(Reply):
         return [cell for row in self.rows for cell in figure4.differences(row)]
 
     def lines(self) -> Iterator[str]:
+        """The table as the lines that ``topomap table`` prints."""
         if self.rows:
             yield from figure4.table_text(self.rows).splitlines()
         yield from (f"differs: {cell}" for cell in self.differences)
@@ -40,12 +44,16 @@ class Table(Reply):
             yield self._verdict
 
     def document(self) -> dict[str, Any]:
+        """The table as ``topomap table --json`` writes it."""
         return {"rows": self.rows}
 
 
 def table_under(watch: Watch, path: str, jobs: int | None, noted: Noted) -> Table:
-    """Count the paper's table, so many columns at a time, and write it to a file as JSON, under
-    the watch of a command. If it is cut, the file keeps an older, complete table."""
+    """Count the paper's table and write it to a file as JSON, under the watch of a command.
+
+    ``jobs`` columns are counted at a time. If the work is cut short, the file keeps an older,
+    complete table.
+    """
     rows: list[Row] = []
     many = len(figure4.COLUMNS)
     with Attempt() as attempt, output(path, parents=True) as file:
@@ -57,8 +65,11 @@ def table_under(watch: Watch, path: str, jobs: int | None, noted: Noted) -> Tabl
 def table_beyond_under(
     watch: Watch, path: str, jobs: int | None, resume: bool, noted: Noted
 ) -> Table:
-    """Count larger grids by so many processes, and write the table to a file as JSON, under the
-    watch of a command. A journal beside the file tells what is done, to ``resume`` it."""
+    """Count larger grids and write the table to a file as JSON, under the watch of a command.
+
+    ``jobs`` processes share the work. A journal beside the file tells what is done; ``resume`` goes
+    on from there.
+    """
     rows: list[Row] = []
     many = len(beyond.COLUMNS) + len(beyond.MERGED)
     run = {"command": "beyond", "columns": [beyond.COLUMNS, beyond.MERGED]}
@@ -79,7 +90,7 @@ def _processors() -> int:
 
 
 def _take(counted: Iterator[Row], rows: list[Row], many: int, noted: Noted) -> None:
-    """Take in the columns as they are counted, and keep them in order."""
+    """Collect the columns as they are counted, and keep them in order."""
     for row in counted:
         rows.append(row)
         rows.sort(key=lambda row: (row["environment"], row["planarity"], row.get("way", "")))

@@ -14,26 +14,24 @@ from topomap.runtime.limits import DRIFT, STRETCH
 class Validation:
     """What is wrong with an instance file, and what in it looks like a mistake.
 
-    ``valid`` tells whether every command takes it. ``faults`` and ``warnings`` are dictionaries
-    with the ``line`` and ``step``, or None, and the words under ``fault`` or ``warning``. In an
-    ``if`` it is true when the file is valid.
+    In an ``if`` it is true when the file is valid.
     """
 
     told: dict[str, Any]
 
     @property
     def valid(self) -> bool:
-        """Whether every command takes the file; warnings do not count."""
+        """Whether every command accepts the file; warnings do not count."""
         return bool(self.told["valid"])
 
     @property
     def faults(self) -> list[dict[str, Any]]:
-        """What is wrong: each fault with ``line``, ``step`` and ``fault``, in words."""
+        """What is wrong: each fault with ``line``, ``step`` (or None) and ``fault``, in words."""
         return list(self.told["faults"])
 
     @property
     def warnings(self) -> list[dict[str, Any]]:
-        """What is seldom meant: each with ``line``, ``step`` and ``warning``, in words."""
+        """What is seldom meant: each with ``line``, ``step`` (or None) and ``warning`` in words."""
         return list(self.told["warnings"])
 
     def __bool__(self) -> bool:
@@ -44,7 +42,7 @@ class Validation:
         return dict(self.told)
 
     def lines(self) -> list[str]:
-        """The same in lines to read."""
+        """All that is known, as the lines that ``topomap validate`` prints."""
         return list(validation.lines(self.told))
 
     def __str__(self) -> str:
@@ -52,19 +50,21 @@ class Validation:
 
 
 def validate(path: str | Path, *, drift: int = DRIFT, stretch: int = STRETCH) -> Validation:
-    """Judge an instance file.
+    """Judge an instance file (the experience in it is that of the paper, section II).
 
     Parameters:
-        path: the file; ``-`` is standard input.
-        drift, stretch: how far shifts and lengths may be wrong, in percent: what is too large for
-            clingo's numbers depends on them.
+        path: The file; ``-`` is standard input.
+        drift: By how many percent of the way shifts may be wrong. What is too large for clingo's
+            numbers depends on it.
+        stretch: By how many percent lengths of one way may differ. What is too large for clingo's
+            numbers depends on it.
 
     Returns:
-        What is wrong with it, and warnings. A file that cannot be read has one fault.
+        What is wrong with the file, and warnings. A file that cannot be read has one fault.
 
     Raises:
-        TypeError: no path.
-        ValueError: a percent that is no whole number from 0.
+        TypeError: ``path`` is not the path of a file.
+        ValueError: ``drift`` or ``stretch`` is not a whole number of 0 or more.
     """
     percents = whole("drift", drift, 0), whole("stretch", stretch, 0)
     return Validation(validation.judged(path_of(path), *percents))

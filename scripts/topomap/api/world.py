@@ -1,4 +1,4 @@
-"""Worlds from files, and back."""
+"""Worlds that are read from files, and written to files."""
 
 from pathlib import Path
 
@@ -24,30 +24,34 @@ def world(
     names: bool = False,
     radius: float | None = None,
 ) -> Environment:
-    """The world in a file, such as a street network, to be given to ``generate`` or ``simulate``.
+    """Read the world in a file, such as a street network, for ``generate`` and ``simulate``.
 
     Parameters:
-        path: a file of one of the formats that docs/files.md lists.
-        slots: how many directions there are at a place, an even number; by default the fewest at
-            which no two exits of a place share one.
-        north: where slot 0 points, in degrees clockwise of north; by default as may be off the most
-            before two exits of a place share a slot.
-        straight: two exits of a place are on one path if each is the one most nearly opposite to
-            the other, and they are off by at most so many degrees; by default opposite slots are.
-        along: the direction of a bent way at its end is that of the point so far along it, in
-            metres or in the units of the file.
-        degrees: whether coordinates are longitude and latitude; by default as the file tells.
-        two_way: whether ways that can be gone one way only are taken as two-way.
-        loops: whether ways back to their own place are kept.
-        names: whether the name of a place in the file is its landmark.
-        radius: of a picture of a floor: how far apart junctions are at most that are one place.
+        path: A file of one of the formats that ``docs/files.md`` lists.
+        slots: The number of directions at a place, an even number; by default the smallest at which
+            no two exits of a place share a slot.
+        north: Where slot 0 points, in degrees clockwise of north; by default the direction that may
+            be off the most before two exits of a place share a slot.
+        straight: The largest number of degrees by which two exits of a place may be off from being
+            opposite if they are on one path; each must be the one most nearly opposite to the
+            other. By default the exits in opposite slots are on one path.
+        along: How far along a bent way the point is that gives its direction at its end, in metres
+            or in the units of the file.
+        degrees: Whether coordinates are longitude and latitude; by default the file tells.
+        two_way: Whether ways that can be gone one way only are taken as two-way.
+        loops: Whether ways back to their own place are kept.
+        names: Whether the name of a place in the file is its landmark.
+        radius: In a floor plan, how far apart junctions are at most that are one place, in metres.
 
     Returns:
-        The world: an environment with its ``map``, and ``notes`` on how it was read.
+        The world, an environment with its ``map``, and ``notes`` on how it was read. (The map is
+        that of the paper, section II.)
 
     Raises:
-        TypeError, ValueError: something else than a path, or a number that cannot be.
-        InputError: the file cannot be read, has one-way ways, or no slots part its ways; one line.
+        TypeError: ``path`` is not the path of a file.
+        ValueError: A number is out of its range.
+        InputError: The file cannot be read, has one-way ways, or no number of slots separates its
+            exits. The message is one line.
     """
     if degrees is not None:
         degrees = flag("degrees", degrees)
@@ -69,17 +73,18 @@ def world(
 
 
 def write_world(world: Environment, path: str | Path) -> None:
-    """Write a world to a file, with positions, slots, landmarks and the names of places; ``world``
-    reads it back as it was.
+    """Write a world to a file, from which ``world`` reads it back as it was.
+
+    The file has positions, slots, landmarks and the names of places.
 
     Parameters:
-        world: what ``world`` or ``generate`` takes.
-        path: the file; its name ends in ``.graphml``, ``.json`` (node-link) or ``.yaml`` (tmap2).
+        world: An environment, as ``world`` gives it and ``generate`` takes it.
+        path: The file. Its name ends in ``.graphml``, ``.json`` (node-link) or ``.yaml`` (tmap2).
 
     Raises:
-        TypeError: something else than a world or a path.
-        InputError: another end of the name, a name of a place that the format cannot hold, or a
-            file that cannot be written; one line.
+        TypeError: ``world`` is not a world, or ``path`` is not the path of a file.
+        InputError: The name has another ending, the format cannot hold the name of a place, or the
+            file cannot be written. The message is one line.
     """
     if not isinstance(world, Environment):
         raise TypeError(f"world must be what topomap.world gives, not {type(world).__name__}")

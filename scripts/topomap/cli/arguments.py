@@ -1,35 +1,109 @@
-"""The arguments that several subcommands have in common. Nothing is loaded here that help does
-not need."""
+"""The arguments that several subcommands have in common.
+
+This module loads nothing that help does not need.
+"""
 
 import argparse
 import math
 import re
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from typing import Any, NoReturn
 
 from topomap.cli.subcommands import SUBCOMMANDS
 from topomap.model.vocabulary import CHOSEN, FORMS, PARTS
 from topomap.runtime.errors import InputError
 from topomap.runtime.limits import DRAWING, DRIFT, LARGEST, STRETCH
+from topomap.runtime.near import meant
 
 STATUS = """\
 exit status: 0 done; 1 the answer is no (the table differs, no map, an unsound map);
 2 bad input or usage; 3 partial (a limit or time limit was reached, or memory ran out);
 130 interrupted"""
 
+NO_LIMIT = "stop after S seconds (default: no limit)"
+
 
 class Parser(argparse.ArgumentParser):
-    """An argument parser whose errors are one line."""
+    """An argument parser whose errors are one line, with a hint of what may be meant."""
+
+    _words: Sequence[str] = ()
 
     def _print_message(self, message: str, file: Any = None) -> None:
-        print(message, end="")  # argparse's own passes over what cannot be written
+        print(message, end="")  # argparse would ignore an error in writing
+
+    def parse_known_args(  # type: ignore[override]  # argparse has several signatures of it
+        self, args: Sequence[str] | None = None, namespace: argparse.Namespace | None = None
+    ) -> tuple[argparse.Namespace, list[str]]:
+        """Parse the words of a call, as argparse does, and keep them for the hint of an error."""
+        self._words = [*(args or ())]  # for the hint of an error
+        return super().parse_known_args(args, namespace)
 
     def error(self, message: str) -> NoReturn:
-        raise InputError(f"{self.prog}: {message} (see {self.prog} --help)")
+        # argparse reports a misspelt option that is required as a missing one.
+        """Refuse a call in one line.
+
+        Raises:
+            InputError: Always.
+        """
+        near = meant_option(self._words, option_names(self)) if "required:" in message else ""
+        hint = f"{near} " if near else ""
+        raise InputError(f"{self.prog}: {message} ({hint}see {self.prog} --help)")
+
+    def _check_value(self, action: argparse.Action, value: Any) -> None:
+        """Refuse a value that is not a choice, with a hint of the choice that may be meant."""
+        if action.choices is not None and value not in action.choices:
+            choices = [str(choice) for choice in action.choices]
+            hint = f"{near} " if (near := meant(str(value), choices)) else ""
+            known = f"{hint}choose from {', '.join(choices)}"
+            raise argparse.ArgumentError(action, f"invalid choice: {value!r} ({known})")
+
+
+def parsers(parser: argparse.ArgumentParser) -> Iterator[argparse.ArgumentParser]:
+    """Walk through a parser and those of its subcommands, and of their subcommands.
+
+    Parameters:
+        parser: The parser to begin with.
+
+    Yields:
+        Each parser once, a command before its subcommands.
+    """
+    yield parser
+    for action in parser._actions:
+        if isinstance(action, argparse._SubParsersAction):
+            for one in action.choices.values():
+                yield from parsers(one)
+
+
+def option_names(parser: argparse.ArgumentParser) -> set[str]:
+    """Collect the long options of a parser and of its subcommands.
+
+    Parameters:
+        parser: The parser.
+
+    Returns:
+        The options, such as ``--json``.
+    """
+    every = (action for one in parsers(parser) for action in one._actions)
+    return {name for action in every for name in action.option_strings if name[:2] == "--"}
+
+
+def meant_option(words: Iterable[str], known: Collection[str]) -> str:
+    """Ask which option was meant by the first misspelt one of a call.
+
+    Parameters:
+        words: The words of the call.
+        known: The options that there are.
+
+    Returns:
+        The question, such as "did you mean --optimal?"; an empty text if there is none to ask.
+    """
+    given = (word.partition("=")[0] for word in words if word[:2] == "--" and word != "--")
+    strange = (word for word in given if not any(name.startswith(word) for name in known))
+    return next(filter(None, (meant(word, known) for word in strange)), "")
 
 
 def command(group: Any, name: str, example: str) -> Parser:
-    """The parser of a subcommand, with its help and an example, but no arguments yet."""
+    """Make the parser of a subcommand, with its help and an example, but no arguments yet."""
     help = SUBCOMMANDS[name]
     made: Parser = group.add_parser(
         name,
@@ -43,9 +117,10 @@ def command(group: Any, name: str, example: str) -> Parser:
 
 
 def number(kind: type, least: float, most: float = LARGEST) -> Any:
-    """An argument type: a finite number between bounds, with a plain word on what is not."""
+    """Make an argument type: a finite number between bounds, or a plain message."""
 
     def number(text: str) -> Any:
+        """Read the number from the text of an argument."""
         try:
             value = kind(text) if re.fullmatch(r"[!-^a-~]+", text) else math.nan
         except ValueError:
@@ -61,13 +136,13 @@ def number(kind: type, least: float, most: float = LARGEST) -> Any:
 
 
 def number_or_auto(kind: type, least: float) -> Any:
-    """The same, or ``auto``, which is None."""
+    """Make an argument type: a number as above, or ``auto``, which becomes None."""
     plain = number(kind, least)
     return lambda text: None if text == "auto" else plain(text)
 
 
 def add_start(add: Any, facing: str) -> None:
-    """Where an exploration starts, and what it can see."""
+    """Add the options that tell where an exploration starts, and which landmarks there are."""
     add(
         "--start",
         metavar="PLACE",
@@ -84,32 +159,37 @@ def add_start(add: Any, facing: str) -> None:
         type=number(float, 0, 1),
         default=0.0,
         metavar="RATE",
-        help="share of places that carry their own name as a landmark",
+        help="share of the places that have their own name as a landmark (default: %(default)g)",
     )
 
 
 def add_senses(add: Any) -> None:
-    """What is measured besides views."""
-    add("--compass", action="store_true", help="note the compass slot of the gateway stood at")
+    """Add the options that tell what is measured besides views."""
+    add(
+        "--compass",
+        action="store_true",
+        help="note the compass slot of the gateway where the agent stands",
+    )
     add(
         "--odometry",
         type=number(float, 0, 1000),
         metavar="PERCENT",
-        help="note how far each step led, with errors of at most so many percent of the way, drawn "
-        "with --seed; the truth is consistent with that --drift, rounded up to a whole number",
+        help="note how far each step led, with errors of at most PERCENT percent of the way, "
+        "drawn with --seed; the true map is consistent with a --drift of this number, "
+        "rounded up (default: not noted)",
     )
     add("--lengths", action="store_true", help="note how long each step was")
 
 
 def add_environments(command: Parser, common: Parser, rest: str) -> Any:
-    """The worlds that can be explored; ``rest`` goes into their examples."""
+    """Add the worlds that can be explored; ``rest`` goes into their examples."""
     name = command.prog.split()[-1]
     kinds = command.add_subparsers(dest="kind", metavar="ENVIRONMENT", required=True)
     for kind, help in (
         ("grid", "a grid of places, four slots, slot 0 north"),
         ("cylinder", "a grid whose rows are rings"),
         ("torus", "a grid whose rows and columns are rings"),
-        ("crescents", "a grid each two columns of which are joined by a way round their ends"),
+        ("crescents", "a grid in which each two columns are joined by a way round their ends"),
         ("maze", "a grid from which ways are taken away at random; it stays connected"),
         ("hexagons", "the corners of a sheet of hexagons, six slots"),
         ("triangles", "a triangular lattice, six slots"),
@@ -129,43 +209,44 @@ def add_environments(command: Parser, common: Parser, rest: str) -> Any:
                 help="share of the ways to take away (default: %(default)s)",
             )
     help = "a world from a file, such as a street network: see docs/files.md for the formats"
-    for kind in ("world", "network"):  # the second name is the older one
+    for kind in ("world", "network"):  # "network" is the older name
         example = f"{name} {kind} city.graphml --slots 4 --north 29 {rest}"
         _add_file(environment(kinds, kind, common, help, example))
     return kinds
 
 
 def _add_file(command: Parser) -> None:
-    """How a file with a world is read."""
+    """Add the options that tell how a file with a world is read."""
     add = command.add_argument
-    add("file", metavar="FILE")
+    add("file", metavar="FILE", help="the file of the world")
     add(
         "--slots",
         type=number_or_auto(int, 2),
         metavar="K",
-        help="directions at a place, even; auto: the fewest at which no two exits of a place share "
-        "one (default: auto)",
+        help="number of directions at a place, which must be even; auto: the smallest number at "
+        "which no two exits of a place share a slot (default: auto)",
     )
     add(
         "--north",
         type=number_or_auto(float, -LARGEST),
         metavar="DEGREES",
-        help="bearing of slot 0, clockwise of north; auto: the one that may be off the most before "
-        "two exits of a place share a slot (default: auto)",
+        help="bearing of slot 0, clockwise of north; auto: the bearing that may be off the most "
+        "before two exits of a place share a slot (default: auto)",
     )
     add(
         "--straight",
         type=number(float, 0, 180),
         metavar="DEGREES",
-        help="two exits of a place are on one path if each is the one most nearly opposite to the "
-        "other, and they are off by at most so many degrees (default: those in opposite slots)",
+        help="two exits of a place are on one path if each is the one most nearly opposite to "
+        "the other, and if they are off from being opposite by at most DEGREES degrees "
+        "(default: exits in opposite slots are on one path)",
     )
     add(
         "--along",
         type=number(float, 0),
         default=10.0,
         metavar="METRES",
-        help="the direction of a bent way at its end is that of the point so far along it, in "
+        help="the direction of a bent way at its end is that of the point METRES along it, in "
         "metres or in the units of the file (default: %(default)g)",
     )
     units = command.add_mutually_exclusive_group()
@@ -186,11 +267,13 @@ def _add_file(command: Parser) -> None:
         "--radius",
         type=number(float, 0),
         metavar="METRES",
-        help="of a picture of a floor: junctions that are no further apart are one place",
+        help="in a floor plan, junctions that are at most METRES apart are one place (default: "
+        "as far as the free space around them reaches)",
     )
 
 
 def environment(kinds: Any, kind: str, common: Parser, help: str, example: str) -> Parser:
+    """Add the parser of a kind of world."""
     added: Parser = kinds.add_parser(
         kind,
         parents=[common],
@@ -203,45 +286,59 @@ def environment(kinds: Any, kind: str, common: Parser, help: str, example: str) 
 
 
 def add_asked(
-    command: Parser, parts: Iterable[str], horizon: bool = True, limit: str = "stop after S seconds"
+    command: Parser,
+    parts: Iterable[str],
+    horizon: bool = True,
+    limit: str = NO_LIMIT,
 ) -> None:
-    """Which maps are asked for, and how long."""
+    """Add the options that tell which maps are asked for, and how long the search may take."""
     add = command.add_argument
     for part in parts:
         add(f"--{part.replace('_', '-')}", action="store_true", help=PARTS[part])
-    add("--bound", type=number(int, 1), metavar="B", help="at most B places")
+    add("--bound", type=number(int, 1), metavar="B", help="at most B places (default: no bound)")
     if horizon:
-        add("--horizon", type=number(int, 0), metavar="T", help="cut the experience after step T")
+        add(
+            "--horizon",
+            type=number(int, 0),
+            metavar="T",
+            help="cut the experience after step T (default: the last step)",
+        )
     add("--timeout", type=number(float, 0.001), metavar="S", help=limit)
 
 
+def add_instance(command: Parser, nargs: str | None = None) -> None:
+    """Add the instance, or the instances, that a command is about."""
+    help = "an instance, the facts of an exploration; - is standard input"
+    command.add_argument("instance", nargs=nargs, metavar="INSTANCE", help=help)
+
+
 def add_known(command: Parser) -> None:
-    """What is known of an instance besides its facts."""
+    """Add the options that tell what is known of an instance besides its facts."""
     add = command.add_argument
     add(
         "--assume",
         action="append",
         metavar="STATEMENT",
         help="take a statement for granted, such as 'same(3,12)', 'not same(3,12)' or "
-        "'places < 12', as in topomap ask --help; can be given several times",
+        "'places < 12', as in topomap ask --help; can be given several times (default: nothing)",
     )
     add_measured(command)
     add_tolerance(command)
 
 
 def add_tolerance(command: Parser) -> None:
-    """How far bearings may be wrong."""
+    """Add the option that tells by how much bearings may be wrong."""
     command.add_argument(
         "--tolerance",
         type=number(int, 0),
         metavar="N",
-        help="bearings may be wrong by N slots; a place keeps those that were seen first "
+        help="bearings may be wrong by N slots; a place keeps the bearings of its first visit "
         "(default: 0)",
     )
 
 
 def add_measured(command: Parser) -> None:
-    """How far what was measured may be wrong."""
+    """Add the options that tell by how much measurements may be wrong."""
     add = command.add_argument
     add(
         "--drift",
@@ -258,6 +355,7 @@ def add_measured(command: Parser) -> None:
 
 
 def add_query(command: Parser, parts: Iterable[str], horizon: bool = True) -> None:
+    """Add the options of a query, and those of the output."""
     add_asked(command, parts, horizon)
     add = command.add_argument
     add("--json", action="store_true", help="write JSON")
@@ -265,45 +363,52 @@ def add_query(command: Parser, parts: Iterable[str], horizon: bool = True) -> No
 
 
 def add_optimal(command: Parser) -> None:
+    """Add the option for optimal maps."""
     command.add_argument(
         "--optimal",
         action="store_true",
-        help="closed maps with the fewest exceptions to consistent boundaries, then the fewest "
-        "paths, then the fewest places; if no map is closed, the best so far, in which gateways "
-        "may be pending",
+        help="only the optimal maps: the closed maps with the fewest exceptions to consistent "
+        "boundaries, then the fewest paths, then the fewest places; if no map is closed, "
+        "the maps that are best so far, which may have pending gateways",
     )
 
 
 def add_circumscribe(command: Parser) -> None:
+    """Add the option for circumscribed maps."""
     command.add_argument(
         "--circumscribe",
         action="store_true",
-        help="of the closed maps with consistent boundaries (or of all with these, if there is no "
-        "such map) those to which none is preferred, by set inclusion, as circumscription has it. "
-        "A map is preferred to another one if its paths are some but not all of the other one's, "
-        "or if its paths are the same and its places are some but not all of the other one's",
+        help="only the circumscribed maps: of the closed maps with consistent boundaries (or of "
+        "all maps with consistent boundaries, if none of them is closed), those to which "
+        "no other one is preferred by set inclusion. A map is preferred to another one if "
+        "its paths are a proper subset of the paths of the other one, or if the paths are "
+        "the same and its places are a proper subset of the places of the other one",
     )
 
 
 def add_encoding(command: Parser) -> None:
+    """Add the option that chooses the rules that clingo gets."""
     command.add_argument(
         "--encoding",
         choices=FORMS,
         default="work",
-        help="which rules clingo gets: those of encodings/, or those of encodings/paper/, which "
-        "state the theory as briefly as they can, and are slow (default: work)",
+        help="which rules clingo gets: work, those of encodings/; or paper, those of "
+        "encodings/paper/, which state the theory as briefly as possible, and are slow "
+        "(default: work)",
     )
 
 
 def add_resume(command: Parser) -> None:
+    """Add the option that goes on with an earlier run."""
     command.add_argument(
         "--resume",
         action="store_true",
-        help="go on where the last run with this output file was cut short; it left FILE.part",
+        help="go on where the last run with this output file was cut short, which left FILE.part",
     )
 
 
 def add_crew(command: Parser, but: str = "") -> None:
+    """Add the options that share the work out among processes."""
     group = command.add_mutually_exclusive_group()
     group.add_argument(
         "--jobs",
@@ -321,13 +426,14 @@ def add_crew(command: Parser, but: str = "") -> None:
 
 
 def add_scene(command: Parser) -> None:
-    """Arguments of what shows a map."""
+    """Add the arguments of commands that show a map."""
     add = command.add_argument
     add(
         "file",
         metavar="INSTANCE|MAPS.json",
-        help="an instance, of which an optimal map is shown, which is closed, or one of the best "
-        "so far, with the options below; or a file of maps, from topomap solve --json",
+        help="an instance, of which an optimal map is shown or, if no map is closed, one of the "
+        "best so far; the options below choose which; or a file of maps, from topomap "
+        "solve --json",
     )
     add(
         "given",
@@ -340,13 +446,15 @@ def add_scene(command: Parser) -> None:
         "--map",
         type=number(int, 1),
         metavar="N",
-        help="take the N-th map; if more than 1000 are optimal, the N-th one found (default: 1)",
+        help="take the N-th map; if more than 1000 maps are optimal, the N-th one that is found "
+        "(default: 1)",
     )
     add(
         "--like",
         metavar="WORLD",
-        help="draw places where they are in this file of a world, as for topomap generate, north "
-        "up; which place is which, the links tell, or landmarks that are names of places there",
+        help="draw the places where they are in this file of a world, as for topomap generate, "
+        "with north up; the links, or landmarks that are names of places in the world, "
+        "tell which place is which",
     )
     add_known(command)
     add_asked(

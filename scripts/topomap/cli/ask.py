@@ -3,7 +3,7 @@
 import argparse
 from typing import Any
 
-from topomap.cli.arguments import add_known, add_optimal, add_query, command
+from topomap.cli.arguments import add_instance, add_known, add_optimal, add_query, command
 from topomap.cli.calls import asked_query, experience_of
 from topomap.cli.tell import tell
 from topomap.model.vocabulary import PARTS, VOCABULARY
@@ -21,8 +21,13 @@ def add(group: Any) -> None:
 
 {VOCABULARY}""",
     )
-    made.add_argument("instance", metavar="INSTANCE")
-    made.add_argument("statement", nargs="+", metavar="STATEMENT")
+    add_instance(made)
+    made.add_argument(
+        "statement",
+        nargs="+",
+        metavar="STATEMENT",
+        help="a statement about the maps, such as 'same(3,12)' (see below)",
+    )
     add_known(made)
     add_optimal(made)
     add_query(made, PARTS)

@@ -4,7 +4,7 @@ import argparse
 import json
 from typing import IO, TYPE_CHECKING, Any
 
-from topomap.cli.arguments import add_known, add_query, command
+from topomap.cli.arguments import add_instance, add_known, add_query, command
 from topomap.cli.calls import asked_query, experience_of
 from topomap.runtime import formats
 from topomap.runtime.files import output
@@ -21,7 +21,7 @@ def add(group: Any) -> None:
         "branching",
         "  topomap branching instances/grid-4x4-snake.lp --bound 16",
     )
-    made.add_argument("instance", metavar="INSTANCE")
+    add_instance(made)
     add_known(made)
     add_query(made, ["perpendicular"])
 
@@ -46,7 +46,7 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _write(out: IO[str], instance: str, nodes: "BranchingNodes") -> None:
-    """Write the nodes as JSON, each as it comes, and then what they come to."""
+    """Write the nodes as JSON, each as it is found, and then their totals."""
     head = formats.headed({"instance": instance})
     out.write(json.dumps(head)[:-1] + ', "nodes": [')
     for number, node in enumerate(nodes):

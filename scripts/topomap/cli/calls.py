@@ -15,12 +15,16 @@ if TYPE_CHECKING:
     from topomap.worlds.senses import Senses
 
 
-# Where not the maps of the whole are asked for, but those of each beginning, or of a file.
+# Commands about the maps of each beginning of an experience, or about the maps in a file.
 ONLY_PAIRS = ("branching", "check", "count", "report", "search")
 
 
 def experience_of(args: argparse.Namespace, path: str, noisy: bool = False) -> "Experience":
-    """The experience in an instance file, with what is taken for granted. Raises InputError."""
+    """Read the experience in an instance file, and add what is taken for granted.
+
+    Raises:
+        InputError: The file is not an instance, or an assumption is not a statement about it.
+    """
     from topomap.model import facts
 
     return known(args, facts.read(path, noisy, *_measured(args)))
@@ -31,7 +35,7 @@ def _measured(args: argparse.Namespace) -> tuple[int | None, int | None, int | N
 
 
 def known_options(args: argparse.Namespace) -> list[str]:
-    """The options of a call that tell what is known besides the facts of instances."""
+    """List the options of a call that tell what is known besides the facts of instances."""
     told = [("--assume", text) for text in args.assume or ()]
     told += [
         (f"--{name}", str(value))
@@ -42,14 +46,18 @@ def known_options(args: argparse.Namespace) -> list[str]:
 
 
 def parsed(args: argparse.Namespace, text: str, source: str) -> "Experience":
-    """The same of the text of an instance, which ``source`` names."""
+    """Make the experience from the text of an instance, which ``source`` names in errors."""
     from topomap.model import facts
 
     return known(args, facts.parse(text, source, False, *_measured(args)))
 
 
 def known(args: argparse.Namespace, experience: "Experience") -> "Experience":
-    """An experience with what is taken for granted. Raises InputError."""
+    """Add to an experience what is taken for granted.
+
+    Raises:
+        InputError: An assumption is not a statement about the experience, or cannot be used here.
+    """
     if not args.assume:
         return experience
     from topomap.api.assume import assumed
@@ -68,7 +76,11 @@ def known(args: argparse.Namespace, experience: "Experience") -> "Experience":
 
 
 def parts_of(args: argparse.Namespace, of: Iterable[str] = PARTS) -> dict[str, bool]:
-    """The parts that are asked for. Raises InputError if the encoding does not state one."""
+    """List the parts that are asked for.
+
+    Raises:
+        InputError: The encoding does not state one of them.
+    """
     parts = {part: True for part in of if getattr(args, part, False)}
     if getattr(args, "encoding", None) == "paper" and (others := unstated(parts.keys())):
         name = f"--{others[0].replace('_', '-')}"
@@ -77,7 +89,7 @@ def parts_of(args: argparse.Namespace, of: Iterable[str] = PARTS) -> dict[str, b
 
 
 def asked_query(args: argparse.Namespace, of: Iterable[str] = PARTS) -> "Query":
-    """The query that asks for these parts, within the bound and the horizon of the call."""
+    """Make the query that asks for these parts, within the bound and the horizon of the call."""
     from topomap.api.parts import query_of
 
     return query_of(
@@ -90,7 +102,7 @@ def asked_query(args: argparse.Namespace, of: Iterable[str] = PARTS) -> "Query":
 
 
 def crew_of(args: argparse.Namespace) -> "Crew":
-    """Those who do the work."""
+    """Make the crew that shares the work: processes, or the workers of a Dask cluster."""
     from topomap.solver.crews import crew
 
     shared = (args.jobs or 1) > 1 or args.dask
@@ -101,7 +113,7 @@ def crew_of(args: argparse.Namespace) -> "Crew":
 
 
 def run_of(args: argparse.Namespace, *experiences: "Experience") -> dict[str, Any]:
-    """What a run that writes to a file computes: its journal goes on with no other one."""
+    """Describe what a run computes that writes to a file; its journal resumes no other run."""
     if args.output is None:
         return {}
     from topomap.solver.solving import digest
@@ -112,7 +124,7 @@ def run_of(args: argparse.Namespace, *experiences: "Experience") -> dict[str, An
 
 
 def senses_of(args: argparse.Namespace) -> "Senses":
-    """What a robot measures besides views."""
+    """Collect what a robot measures besides views."""
     from topomap.worlds.senses import Senses
 
     measured = getattr(args, "drift", None), getattr(args, "stretch", None)
@@ -120,7 +132,7 @@ def senses_of(args: argparse.Namespace) -> "Senses":
 
 
 def environment_of(args: argparse.Namespace) -> "Environment":
-    """The environment that a call of ``generate`` or ``simulate`` names."""
+    """Make the environment that a call of ``generate`` or ``simulate`` names."""
     from topomap.worlds import environment
 
     if args.kind in ("world", "network"):

@@ -3,7 +3,7 @@
 import argparse
 from typing import Any
 
-from topomap.cli.arguments import add_known, add_query, command, number
+from topomap.cli.arguments import add_instance, add_known, add_query, command, number
 from topomap.cli.calls import asked_query, experience_of
 from topomap.cli.tell import tell
 from topomap.model.vocabulary import PROPERTIES, RELAXING
@@ -21,30 +21,33 @@ def add(group: Any) -> None:
   topomap check instances/grid-3x3-snake.lp maps.json --planar
   topomap check --all instances/grid-3x3-snake.lp maps.json""",
     )
-    made.add_argument("instance", metavar="INSTANCE")
+    add_instance(made)
     made.add_argument(
         "maps",
         metavar="MAPS.json",
-        help="from topomap solve --json or clingo --outf=2; a map needs the key at, "
-        "[[T,P,S], ...], and its other keys are verified; so are the parts, bound, horizon, kind, "
-        "cost and count of the file, but not that there are no other maps",
+        help="maps from topomap solve --json or clingo --outf=2; a map needs the key at, "
+        "[[T,P,S], ...], and its other keys are verified. The parts, bound, horizon, kind, "
+        "cost and count of the file are verified, too, but not that there are no other "
+        "maps",
     )
     made.add_argument(
-        "--truth", metavar="FILE", help="the real map (from generate --truth), for the key real"
+        "--truth",
+        metavar="FILE",
+        help="the real map (from generate --truth), to verify the key real",
     )
     made.add_argument(
         "--noise",
         type=number(int, 0),
         metavar="K",
-        help="a map may disbelieve up to K views, named in its key misread, and no more than its "
-        "file allows",
+        help="a map may contradict up to K views, which its key misread names, and at most as "
+        "many as its file allows (default: as many as its file allows)",
     )
     made.add_argument(
         "--all",
         action="store_true",
         help="tell of each map which axioms and defaults it breaks, and name its exceptions to "
-        "consistent boundaries; what is not demanded here, nor said of the maps in the file, is "
-        "then nothing wrong, the path axiom included",
+        "consistent boundaries; a map is then wrong only if it breaks what is demanded "
+        "here, or what the file says of it; this includes the path axiom",
     )
     add_query(made, (*PROPERTIES, *RELAXING), horizon=False)
     add_known(made)

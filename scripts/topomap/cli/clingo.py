@@ -1,6 +1,8 @@
-"""The subcommand ``clingo``, as the wheel of clingo from PyPI has no such command: clingo's own
-main function, options and exit statuses (10 satisfiable, 20 unsatisfiable, 30 all found, 65 bad
-input)."""
+"""The subcommand ``clingo``, because the wheel of clingo from PyPI has no such command.
+
+It has clingo's own main function, options and exit statuses (10 satisfiable, 20 unsatisfiable, 30
+all found, 65 bad input).
+"""
 
 from collections.abc import Sequence
 from typing import Any
@@ -9,7 +11,7 @@ from topomap.cli.arguments import command
 
 
 def add(group: Any) -> None:
-    """The parser of ``topomap clingo``, for help: clingo reads its options itself."""
+    """Add the parser of ``topomap clingo`` for its help; clingo itself reads the options."""
     command(
         group,
         "clingo",
@@ -20,10 +22,12 @@ def add(group: Any) -> None:
 
 
 def run(arguments: Sequence[str]) -> int:
-    """Run clingo with these arguments; returns its exit status."""
+    """Run clingo with these arguments, and return its exit status."""
     from clingo.application import Application, clingo_main
 
     class Clingo(Application):
+        """The application clingo, under its own name."""
+
         program_name = "clingo"
 
     return clingo_main(Clingo(), arguments)

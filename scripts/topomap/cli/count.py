@@ -6,6 +6,7 @@ from typing import Any
 from topomap.cli.arguments import (
     add_circumscribe,
     add_crew,
+    add_instance,
     add_known,
     add_query,
     add_resume,
@@ -30,15 +31,15 @@ def add(group: Any) -> None:
   topomap count instances/grid-3x4-paper.lp --circumscribe
   topomap generate grid 4 5 | topomap count - --merging""",
     )
-    made.add_argument("instance", metavar="INSTANCE")
+    add_instance(made)
     add_known(made)
     add_query(made, [part for part in PARTS if part not in OPTIMIZING])
     add_circumscribe(made)
     made.add_argument(
         "--merging",
         action="store_true",
-        help="count by merging hypotheses that have the same future, for what is too much to be "
-        "listed: all maps, the closed ones, and those that are closed and perpendicular",
+        help="count by merging hypotheses that have the same future, if there are too many maps "
+        "to list: all maps, the closed ones, and those that are closed and perpendicular",
     )
     add_crew(made)
     add_resume(made)

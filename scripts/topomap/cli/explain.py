@@ -3,7 +3,7 @@
 import argparse
 from typing import Any
 
-from topomap.cli.arguments import add_known, add_query, command
+from topomap.cli.arguments import add_instance, add_known, add_query, command
 from topomap.cli.calls import asked_query, experience_of
 from topomap.cli.tell import tell
 from topomap.model.vocabulary import DEMANDS, RELAXING, VOCABULARY
@@ -22,14 +22,20 @@ def add(group: Any) -> None:
 
 {VOCABULARY}""",
     )
-    made.add_argument("instance", metavar="INSTANCE")
-    made.add_argument("statement", nargs="?", metavar="STATEMENT")
+    add_instance(made)
+    made.add_argument(
+        "statement",
+        nargs="?",
+        metavar="STATEMENT",
+        help="the statement to explain, such as 'same(3,12)' (see below; default: that there is a "
+        "map)",
+    )
     add_known(made)
     add_query(made, (*DEMANDS, *RELAXING))
 
 
 def run(args: argparse.Namespace) -> int:
-    """Tell why a statement is so."""
+    """Tell why a statement is impossible or certain."""
     from topomap.api.explain import explain_under
     from topomap.runtime.watch import heeding
 

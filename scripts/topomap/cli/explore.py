@@ -4,7 +4,7 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from topomap.cli.arguments import add_known, add_query, command, number
+from topomap.cli.arguments import add_instance, add_known, add_query, command, number
 from topomap.cli.calls import asked_query, experience_of
 from topomap.cli.tell import tell
 from topomap.model.vocabulary import CHOSEN
@@ -32,14 +32,14 @@ def add(group: Any) -> None:
   topomap explore grid.lp --bound 16 --facts | clingo encodings/explore.lp - -c n=3""",
     )
     add = made.add_argument
-    add("instance", metavar="INSTANCE")
+    add_instance(made)
     add(
         "--among",
         action="append",
         metavar="MAPS",
-        help="the maps that may be the real one: optimal (the best so far, if none is optimal), "
-        "closed, perpendicular (and closed), or a file of maps of this instance; can be given "
-        "several times (default: optimal)",
+        help="the maps that may be the real one: optimal (the best so far, if no map is "
+        "closed), closed, perpendicular (these are closed, too), or a file of maps of this "
+        "instance; can be given several times (default: optimal)",
     )
     add(
         "--marker",
@@ -97,7 +97,7 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _check(args: argparse.Namespace, experience: "Experience") -> int:
-    """Check what ``--proof`` wrote."""
+    """Check the proofs that ``--proof`` wrote."""
     from topomap.api.explore import check_proofs
 
     checked = check_proofs(experience, args.check, horizon=args.horizon)

@@ -33,6 +33,7 @@ def run(args: argparse.Namespace) -> int:
     from topomap.runtime.files import output
 
     def show(scene: "Scene", late: "Late") -> str:
+        """Write the map, and return a note if it is drawn plainly."""
         text, note = exported(scene, args.format, late)
         with output(args.output) as file:
             file.write(text)

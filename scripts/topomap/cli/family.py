@@ -21,7 +21,11 @@ def add(group: Any) -> None:
         "family",
         "  topomap family instances/batch.txt -d build/instances",
     )
-    made.add_argument("file", metavar="FAMILY")
+    made.add_argument(
+        "file",
+        metavar="FAMILY",
+        help="a family file: each line has the arguments of topomap generate for some instances",
+    )
     made.add_argument(
         "-d",
         "--directory",
@@ -33,8 +37,7 @@ def add(group: Any) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Write the call of each instance of a family where it changed, and drop what is no
-    longer listed of what the last call made."""
+    """Write the calls of a family that changed, and remove the files of former instances."""
     from topomap.cli import parse
     from topomap.worlds.family import expand
 
@@ -56,10 +59,10 @@ def run(args: argparse.Namespace) -> int:
                 f"{args.file}:{line}: a second instance named {made.name}; give it another --name"
             )
         calls[made.name] = shlex.join(call) + "\n"
-        if parsed.kind in ("world", "network"):  # make sees by this line that the map was changed
+        if parsed.kind in ("world", "network"):  # by this line make sees a change of the map
             is_now = Path(parsed.file).stat()
             calls[made.name] += f"# {is_now.st_size} bytes, changed {is_now.st_mtime_ns}\n"
-    # At any moment what was made is listed, so that a call that was cut short can be repeated.
+    # What was made is listed at any time, so that a call that was cut short can be repeated.
     made_before = folder / ".family"
     old = read_text(made_before).splitlines() if made_before.exists() else []
     for name in set(old) - set(calls):

@@ -21,7 +21,7 @@ def add(group: Any) -> None:
         nargs="*",
         default=(),
         metavar="FIGURE",
-        help="draw only these figures, such as figure1",
+        help="draw only these figures, such as figure1 (default: all figures)",
     )
     made.add_argument(
         "-d", "--directory", required=True, metavar="DIR", help="folder for FIGURE.svg"

@@ -54,7 +54,7 @@ what is certain: new(T), the place where the agent is after step T was not visit
     )
     add("--planar", action="store_true", help=f"{PARTS['planar']}; of one log only (no start)")
     add("--no-path-axiom", action="store_true", help=PARTS["no_path_axiom"])
-    add("--bound", type=number(int, 1), metavar="B", help="at most B places")
+    add("--bound", type=number(int, 1), metavar="B", help="at most B places (default: no bound)")
     add(
         "--marker",
         action="store_true",
@@ -69,11 +69,16 @@ what is certain: new(T), the place where the agent is after step T was not visit
     )
     add_measured(made)
     add_tolerance(made)
-    add("--timeout", type=number(float, 0.001), metavar="S", help="at most S seconds for each step")
+    add(
+        "--timeout",
+        type=number(float, 0.001),
+        metavar="S",
+        help="take at most S seconds for each step (default: no limit)",
+    )
     add(
         "--keep-going",
         action="store_true",
-        help="report lines with a fault, and go on with the next line (status 0)",
+        help="report lines with a fault, and go on with the next line (the status is then 0)",
     )
     add("--no-wait", dest="wait", action="store_false", help="stop at the end of the file")
     add("--json", action="store_true", help="a line of JSON for each step")
@@ -129,7 +134,7 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _replay(args: argparse.Namespace, follower: "Follower", log: "Log") -> int:
-    """Go to where a log ends, and say what is known there; the exit status by then."""
+    """Go to the end of a log, say what is known there, and return the exit status so far."""
     from topomap.questions.lines import decoded
 
     record = follower.record
@@ -142,8 +147,10 @@ def _replay(args: argparse.Namespace, follower: "Follower", log: "Log") -> int:
 
 
 def _tell(args: argparse.Namespace, follower: "Follower", begun: float, before: int) -> int:
-    """Print what is known now; the exit status, which was another one before. Once partial, it
-    stays so."""
+    """Print what is known now, and return the exit status.
+
+    ``before`` is the exit status so far; once it is partial, it stays so.
+    """
     from topomap.runtime.watch import Stopped, heeding
 
     with heeding(args.timeout) as watch:

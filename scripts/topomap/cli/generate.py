@@ -48,7 +48,12 @@ def add(group: Any) -> None:
         help="snake; walk (random); tour (over every way); compass letters such as ESSENN "
         "(4 slots; with 8, separated by commas: N,NE,E); or absolute slots: 0,3,1",
     )
-    add("--steps", type=number(int, 0, MOST_STEPS), metavar="N", help="cut the route after N steps")
+    add(
+        "--steps",
+        type=number(int, 0, MOST_STEPS),
+        metavar="N",
+        help="cut the route after N steps; a walk needs it (default: the whole route)",
+    )
     add_start(add, "the one by which the route leaves")
     add(
         "--seed",
@@ -116,7 +121,7 @@ def run(args: argparse.Namespace) -> int:
 
 
 def instance_of(args: argparse.Namespace, world: "Environment | None" = None) -> "Instance":
-    """The instance that a call of ``generate`` makes; in a ``world``, if that was made before."""
+    """Make the instance of a call of ``generate``, in a ``world`` if that was made before."""
     from topomap.api.generate import generate
 
     world = world or environment_of(args)

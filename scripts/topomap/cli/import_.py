@@ -17,7 +17,9 @@ def add(group: Any) -> None:
   topomap import map.graphml -o maps.json
   topomap check instances/grid-4x4-snake.lp maps.json""",
     )
-    made.add_argument("file", metavar="FILE.graphml|FILE.json")
+    made.add_argument(
+        "file", metavar="FILE.graphml|FILE.json", help="a map that topomap export wrote"
+    )
     made.add_argument("-o", "--output", metavar="FILE", help="file to write (default: stdout)")
 
 

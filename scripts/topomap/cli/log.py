@@ -27,50 +27,52 @@ def add(group: Any) -> None:
         "--slots",
         type=number_or_auto(int, 2),
         metavar="K",
-        help="directions at a place, even; auto: the fewest that fit the bearings, else 360 "
-        "(default: auto)",
+        help="number of directions at a place, which must be even; auto: the smallest number "
+        "that fits the bearings, otherwise 360 (default: auto)",
     )
     add(
         "--tolerance",
         type=number_or_auto(int, 0),
         metavar="N",
-        help="bearings may be wrong by N slots; auto: 0 if they fit the slots, else measured where "
-        "the log surely comes to a place again (default: auto)",
+        help="bearings may be wrong by N slots; auto: 0 if they fit the slots, otherwise "
+        "measured where the log certainly comes to a place again (default: auto)",
     )
     add(
         "--frame",
         choices=("arrival", "north"),
-        help="where bearings count from: the exit by which one arrived, or north (default: north "
-        "if there are compass letters, else arrival)",
+        help="from where bearings count: arrival, the exit by which one arrived; or north "
+        "(default: north if there are compass letters, otherwise arrival)",
     )
     add(
         "--facing",
         choices=("back", "ahead"),
         default="back",
-        help="where bearing 0 is, if bearings count from the arrival: at the way back, or ahead, "
-        "which puts the way back at 180 (default: back)",
+        help="where bearing 0 is, if bearings count from the arrival: back, at the way back; or "
+        "ahead, so that the way back is at 180 (default: back)",
     )
     add(
         "--straight-ways",
         type=number(float, 0, 180),
         metavar="DEGREES",
-        help="if bearings count from north: a way bends by at most so many degrees from one place "
-        "to the next, so the exit by which one arrived is known where the log does not tell it",
+        help="if bearings count from north: a way bends by at most DEGREES degrees from one "
+        "place to the next, which tells the exit by which one arrived where the log does "
+        "not (default: nothing is known about bends)",
     )
     add(
         "--straight",
         type=number(float, 0, 180),
         metavar="DEGREES",
-        help="two exits of a place are on one path if each is the one most nearly opposite to the "
-        "other, and they are off by at most so many degrees (default: those in opposite slots; "
-        "if no slots fit the bearings, chosen)",
+        help="two exits of a place are on one path if each is the one most nearly opposite to "
+        "the other, and if they are off from being opposite by at most DEGREES degrees "
+        "(default: exits in opposite slots are on one path; if no number of slots fits the "
+        "bearings, the limit is chosen)",
     )
     add(
         "--unit",
         type=number(float, 1e-9, LARGEST),
         metavar="U",
-        help="how much of the lengths is one unit of the instance (default: 1, or 0.01 if some are "
-        "fractions)",
+        help="the length in the log that is one unit of the instance (default: 1, or 0.01 if "
+        "some lengths are fractions)",
     )
     add("--json", action="store_true", help="print a summary as JSON")
     add("-o", "--output", metavar="FILE", help="file to write (default: stdout)")

@@ -3,7 +3,7 @@
 import argparse
 from typing import Any
 
-from topomap.cli.arguments import add_asked, add_known, command, number
+from topomap.cli.arguments import add_asked, add_instance, add_known, command, number
 from topomap.cli.calls import asked_query, experience_of, known_options
 from topomap.model.vocabulary import CHOSEN
 from topomap.runtime.errors import InputError, say
@@ -20,7 +20,7 @@ def add(group: Any) -> None:
   topomap report instances/grid-4x4-snake.lp --bound 16 --timeout 120 -o report.html""",
     )
     add = made.add_argument
-    add("instance", nargs="+", metavar="INSTANCE")
+    add_instance(made, nargs="+")
     add(
         "--maps",
         type=number(int, 0),

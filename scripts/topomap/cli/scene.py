@@ -15,14 +15,14 @@ if TYPE_CHECKING:
     from topomap.drawing.scenes import Scene
     from topomap.runtime.watch import Late
 
-SEARCH = 0.7  # of the time, at most, goes into the search for maps; the rest is for the drawing
+SEARCH = 0.7  # the largest share of the time for the search; the rest is for the drawing
 
 
 def with_scene(args: argparse.Namespace, show: "Callable[[Scene, Late], str]") -> int:
-    """Search for the map, and show it, both within the time limit of the call; the exit status.
+    """Search for the map and show it, both within the time limit; return the exit status.
 
-    ``show`` is given what tells when the time is over. It returns a note if the map is then drawn
-    plainly, which is partial, as it is if the map may not be the best.
+    ``show`` gets a function that tells whether the time is over. It returns a note if the map is
+    then drawn plainly. This is partial, and so is a map that may not be the best.
     """
     from topomap.api.scenes import scenes_under
     from topomap.model import words

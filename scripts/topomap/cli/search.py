@@ -3,7 +3,7 @@
 import argparse
 from typing import TYPE_CHECKING, Any
 
-from topomap.cli.arguments import add_known, add_query, command
+from topomap.cli.arguments import add_instance, add_known, add_query, command
 from topomap.cli.calls import asked_query, experience_of
 from topomap.cli.tell import tell
 from topomap.model.vocabulary import PRUNING
@@ -24,14 +24,14 @@ def add(group: Any) -> None:
   topomap search instances/grid-4x4-snake.lp --order depth
   topomap search instances/grid-4x4-snake.lp --order best --planar --perpendicular""",
     )
-    made.add_argument("instance", metavar="INSTANCE")
+    add_instance(made)
     add_known(made)
     made.add_argument(
         "--order",
         choices=("breadth", "depth", "best"),
         default="breadth",
-        help="breadth: count the whole tree step by step; depth: the same in little memory; best: "
-        "best map first, until a closed map is found (default: %(default)s)",
+        help="breadth: count the whole tree step by step; depth: count it with little memory; "
+        "best: the best map first, until a closed map is found (default: %(default)s)",
     )
     add_query(made, PRUNING)
 

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from topomap.drawing.scenes import Scene
     from topomap.runtime.watch import Late
 
-LEAST, MOST = 20, 100  # columns of a terminal
+LEAST, MOST = 20, 100  # numbers of columns
 
 
 def add(group: Any) -> None:
@@ -35,6 +35,7 @@ def run(args: argparse.Namespace) -> int:
     from topomap.api.draw import characters
 
     def show(scene: "Scene", late: "Late") -> str:
+        """Print the map, and return a note if it is drawn plainly."""
         columns = max(LEAST, min(shutil.get_terminal_size().columns, MOST))
         text, note = characters(scene, columns, _is_coloured(), not _has_signs(), late)
         sys.stdout.write(text)
@@ -50,7 +51,7 @@ def _is_coloured() -> bool:
 
 
 def _has_signs() -> bool:
-    """Whether standard output has the signs that links are drawn with."""
+    """Whether standard output can show the signs that links are drawn with."""
     try:
         "─│╴⠿→".encode(getattr(sys.stdout, "encoding", None) or "utf-8")
     except UnicodeEncodeError:

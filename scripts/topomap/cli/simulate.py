@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
 from topomap.cli.arguments import (
+    NO_LIMIT,
     Parser,
     add_asked,
     add_environments,
@@ -46,7 +47,12 @@ def add(group: Any) -> None:
     common = Parser(add_help=False)
     add = common.add_argument
     add_start(add, "the smallest")
-    add("--seed", type=number(int, 0), metavar="N", help="seed for signs and maze (default: 0)")
+    add(
+        "--seed",
+        type=number(int, 0),
+        metavar="N",
+        help="seed for signs, maze and odometry (default: 0)",
+    )
     add(
         "--steps",
         type=number(int, 0, MOST_STEPS),
@@ -70,14 +76,19 @@ def add(group: Any) -> None:
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     add = listed.add_argument
-    add("file", metavar="FILE")
-    add("--timeout", type=number(float, 0.001), metavar="S", help="stop after S seconds")
+    add("file", metavar="FILE", help="a file, each line of which is one environment")
+    add(
+        "--timeout",
+        type=number(float, 0.001),
+        metavar="S",
+        help=NO_LIMIT,
+    )
     add("--json", action="store_true", help="write JSON")
     add("-o", "--output", metavar="FILE", help="file to write (default: stdout)")
 
 
 def run(args: argparse.Namespace) -> int:
-    """Let a robot explore, or one after the other."""
+    """Let a robot explore a world, or robots explore a list of worlds."""
     if args.kind == "list":
         return _list(args)
     from topomap.runtime.watch import heeding
@@ -96,7 +107,11 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _environment(args: argparse.Namespace) -> "Environment":
-    """The environment of a call. Raises InputError where there is none, or no such start."""
+    """Make the environment of a call.
+
+    Raises:
+        InputError: There is no such environment, or no such start in it.
+    """
     from topomap.questions.robot import start_of
 
     environment = environment_of(args)
@@ -117,7 +132,7 @@ def _simulated(
 
 
 def _list(args: argparse.Namespace) -> int:
-    """One robot for each line of a file, and what came of them in a table."""
+    """Let a robot explore the world of each line of a file, and write a table."""
     from topomap.questions.robot import ENDED, ENDS, table
     from topomap.runtime.watch import heeding
 
@@ -146,8 +161,12 @@ def _list(args: argparse.Namespace) -> int:
 
 
 def _calls(args: argparse.Namespace) -> "Iterator[tuple[str, argparse.Namespace, Environment]]":
-    """The lines of the file, parsed, each with its environment. Raises InputError naming the line
-    that is no call, or of a start that is not there."""
+    """Parse the lines of the file, each with its environment.
+
+    Raises:
+        InputError: A line is not a call, or its start is not in its world; the message names the
+            line.
+    """
     from topomap.cli import parse
     from topomap.worlds.family import expand
 

@@ -8,6 +8,7 @@ from topomap.cli.arguments import (
     add_circumscribe,
     add_crew,
     add_encoding,
+    add_instance,
     add_known,
     add_optimal,
     add_query,
@@ -41,11 +42,13 @@ def add(group: Any) -> None:
   topomap solve instances/grid-4x4-snake.lp --bound 16 --jobs 2 -o maps.txt
   topomap solve instances/grid-3x3-misread.lp --optimal --planar --noise 1""",
     )
-    made.add_argument("instance", nargs="+", metavar="INSTANCE")
+    add_instance(made, nargs="+")
     add_known(made)
     add_optimal(made)
     add_circumscribe(made)
-    made.add_argument("--limit", type=number(int, 1), metavar="N", help="stop after N maps")
+    made.add_argument(
+        "--limit", type=number(int, 1), metavar="N", help="stop after N maps (default: no limit)"
+    )
     made.add_argument(
         "--truth",
         metavar="FILE",
@@ -55,8 +58,8 @@ def add(group: Any) -> None:
         "--by",
         choices=("auto", "clingo", "search"),
         default="auto",
-        help="how to find the maps: clingo, the search in Python, or whichever suits, which is "
-        "decided by how much work there is, never by time (default: %(default)s)",
+        help="how to find the maps: clingo; search, in Python; or auto, whichever has less work "
+        "to do, which is decided by counted work, never by time (default: %(default)s)",
     )
     add_query(made, PARTS)
     add_crew(made, "; not with --optimal, --circumscribe, --minimal or --genus")
@@ -66,14 +69,13 @@ def add(group: Any) -> None:
         "--noise",
         type=number(int, 0),
         metavar="K",
-        help="allow up to K views to be wrong, as few as possible: gateways and landmarks were "
-        "missed or imagined",
+        help="up to K views, as few as possible, may be wrong: gateways and landmarks were "
+        "missed or imagined (default: no view is wrong)",
     )
 
 
 def run(args: argparse.Namespace) -> int:
     """Enumerate the maps of each instance."""
-
     _combined(args)
     inputs = []
     for path in args.instance:
@@ -119,7 +121,11 @@ def _solve_one(
     crew: "Crew",
     out: IO[str],
 ) -> tuple[str | None, bool]:
-    """Write the maps of an instance; why they may not be all, if so, and whether there are any."""
+    """Write the maps of an instance.
+
+    Returns:
+        Why they may not be all, or None, and whether there are any.
+    """
     from topomap.api.solve import solve_under
     from topomap.documents.answers import Report
     from topomap.runtime.watch import Attempt, heeding
@@ -143,15 +149,18 @@ def _solve_one(
                 report.add(one.found)
         fault, way = attempt.fault or answer.fault, None
         if fault is None:
-            with Attempt():  # if it is cut, nothing is claimed
+            with Attempt():  # if it is cut short, nothing is claimed
                 way = answer.in_the_way()
         report.end(fault, by=answer.by, least=answer.least, way=way)
     return fault, bool(report.count)
 
 
 def _combined(args: argparse.Namespace) -> None:
-    """Raises InputError if a preference or misreadings are asked for together with what cannot be
-    combined with them."""
+    """Refuse a preference, or misreadings, together with what cannot be combined with them.
+
+    Raises:
+        InputError: There is such a combination.
+    """
     asked = {
         "--optimal": args.optimal,
         "--minimal": args.minimal,
@@ -172,4 +181,4 @@ def _combined(args: argparse.Namespace) -> None:
     for option, others in without.items():
         for other in others:
             if given[option] and asked[other]:
-                raise InputError(f"topomap solve: {option} does not go with {other}")
+                raise InputError(f"topomap solve: {option} cannot be combined with {other}")

@@ -3,8 +3,8 @@
 SUBCOMMANDS = {
     "generate": "explore an environment and write what is seen as an instance",
     "log": (
-        "read a log that was noted as a table, CSV, or as JSON lines, with bearings in degrees or "
-        "compass letters, and write it as an instance"
+        "read a log with bearings in degrees or compass letters, which is a table (CSV) or JSON "
+        "lines, and write it as an instance"
     ),
     "validate": (
         "report all that is wrong with instances, and what looks like a mistake, without "
@@ -17,14 +17,14 @@ SUBCOMMANDS = {
         "exploration, in some or in none, with maps as witnesses"
     ),
     "explain": (
-        "say why a statement about the maps is impossible, or certain, or why there is no "
-        "map, by reasons each of which is needed. (The statement is about all maps, not "
-        "only the optimal ones: that another map is better is not such a reason)"
+        "say why a statement about the maps is impossible, or certain, or why there is no map, "
+        "by reasons each of which is needed. (The statement is about all maps, not only the "
+        "optimal ones, because a better map is not such a reason)"
     ),
     "explore": (
-        "say where to go next: by the shortest further walk that tells the maps apart, or "
-        "leaves the fewest of them in the worst case; if there is no such walk, by one to a"
-        " pending gateway; or prove that no walk can ever tell the maps apart"
+        "say where to go next: the shortest further walk that tells the maps apart, or leaves "
+        "the fewest of them in the worst case; if there is no such walk, one to a pending "
+        "gateway; or the proof that no walk can ever tell the maps apart"
     ),
     "follow": (
         "follow an exploration as it happens, and print after each step how many hypotheses"
@@ -46,8 +46,8 @@ SUBCOMMANDS = {
     ),
     "table": "print the paper's Figure 4 beside our numbers, and write them as JSON",
     "family": (
-        "print the names of the instances of a family file, and write the arguments of each"
-        " that changed"
+        "print the names of the instances of a family file, and write the arguments of those "
+        "that changed"
     ),
     "draw": "draw a map, as SVG, PNG or PDF",
     "show": "print a map, drawn in the terminal and then described in words",

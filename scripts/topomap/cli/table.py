@@ -4,7 +4,7 @@ import argparse
 import sys
 from typing import Any
 
-from topomap.cli.arguments import add_resume, command, number
+from topomap.cli.arguments import NO_LIMIT, add_resume, command, number
 from topomap.cli.tell import tell
 from topomap.runtime.errors import InputError, say
 
@@ -20,12 +20,15 @@ def add(group: Any) -> None:
         "--jobs",
         type=number(int, 1),
         metavar="N",
-        help="how many columns, or with --beyond processes, at a time (default: one for each "
-        "processor)",
+        help="number of columns, or with --beyond of processes, at a time (default: one for "
+        "each processor)",
     )
     made.add_argument("--json", action="store_true", help="print JSON instead of the table")
     made.add_argument(
-        "--timeout", type=number(float, 0.001), metavar="S", help="stop after S seconds"
+        "--timeout",
+        type=number(float, 0.001),
+        metavar="S",
+        help=NO_LIMIT,
     )
     made.add_argument(
         "-o",
@@ -36,14 +39,14 @@ def add(group: Any) -> None:
     made.add_argument(
         "--beyond",
         action="store_true",
-        help="count what the paper does not have instead: 4x4 without a bound, 4x5, 5x4, 5x5; "
-        "takes an hour",
+        help="count instead what lies beyond the paper's table: 4x4 without a bound, 4x5, 5x4, "
+        "5x5; this takes an hour",
     )
     add_resume(made)
 
 
 def run(args: argparse.Namespace) -> int:
-    """Count the paper's table, or what is beyond it, print it and write it as JSON."""
+    """Count the paper's table, or what lies beyond it, print it and write it as JSON."""
     from topomap.api.table import table_beyond_under, table_under
     from topomap.runtime.watch import heeding
 

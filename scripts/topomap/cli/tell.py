@@ -17,8 +17,11 @@ def tell(
     yes: bool,
     instance: str | None = None,
 ) -> int:
-    """Write a reply, as text or as JSON, which names the instance that it is about, if there is
-    one; the exit status: partial, or else whether the answer is ``yes``."""
+    """Write a reply as text or as JSON, and return the exit status.
+
+    JSON names the instance that the reply is about, if there is one. The status is partial, or
+    tells whether the answer is ``yes``.
+    """
     if args.json:
         named = {} if instance is None else {"instance": instance}
         out.write(formats.line({**named, **reply.document()}, reply.fault))

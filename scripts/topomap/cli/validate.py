@@ -26,7 +26,7 @@ def add(group: Any) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Tell of each file what is wrong with it; status 2 if anything is."""
+    """Tell what is wrong with each file; the status is 2 if anything is."""
     from topomap.api.validate import validate
 
     given = {"drift": args.drift, "stretch": args.stretch}

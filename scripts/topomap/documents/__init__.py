@@ -1,1 +1,1 @@
-"""Maps as documents: written, read, and checked, whoever made them."""
+"""Maps as documents, whoever made them: they are written, read and checked."""

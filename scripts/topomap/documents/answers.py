@@ -1,4 +1,4 @@
-"""Answers of ``solve``: maps as JSON, or as lines to read."""
+"""The answers of ``solve``: maps as JSON, or as lines to read."""
 
 import json
 from collections.abc import Iterable, Sequence
@@ -16,10 +16,12 @@ from topomap.solver import defaults
 
 
 def map_json(world: TopologicalMap, at: Sequence[Gateway]) -> dict[str, Any]:
-    """A hypothesis as JSON, from its map and the dstate after each step. A gateway or dstate
-    is ``[place, slot]``; a link its two gateways; a path its dstates in order, with the slot
-    of its heading; a face the gateways its walk leaves by (the paper's next); ``dstate``
-    where the agent is."""
+    """Convert a hypothesis to JSON, from its map and the dstate after each step.
+
+    A gateway or a dstate is ``[place, slot]``; a link is its two gateways; a path is its dstates in
+    order, with the slot of its heading; a face is the gateways by which its walk leaves (the
+    paper's next); ``dstate`` is where the agent is.
+    """
     return {
         "at": steps_json(at),
         "places": [
@@ -36,8 +38,11 @@ def map_json(world: TopologicalMap, at: Sequence[Gateway]) -> dict[str, Any]:
 
 
 def misread_json(experience: Experience, misread: Sequence[Misread]) -> list[dict[str, Any]]:
-    """What was misread, as JSON: the step, the gateway or the landmark, and whether it was seen,
-    and so is imagined, or was missed."""
+    """Convert what was misread to JSON.
+
+    Each entry has the step, the gateway or the landmark, and whether it was seen (and so is
+    imagined) or was missed.
+    """
     return [
         {"step": step, "gateway": what, "seen": what in experience.views[step]}
         if isinstance(what, int)
@@ -47,8 +52,10 @@ def misread_json(experience: Experience, misread: Sequence[Misread]) -> list[dic
 
 
 def map_line(experience: Experience, found: Found) -> str:
-    """A hypothesis in one line: what it disbelieves, its size, and the dstate after each step.
-    The experience is the corrected one."""
+    """Write a hypothesis in one line: what it contradicts, its size, and its dstates.
+
+    ``experience`` is the corrected one.
+    """
     if not found.misread:
         return Texts(experience, path_axiom=False).line(found)
     world = experience.map_of(found.at)
@@ -64,22 +71,27 @@ def map_line(experience: Experience, found: Found) -> str:
 
 
 def line_of(size: tuple[int, int, int, int, int], way: str) -> str:
-    """The line of a map with these numbers of places, links and paths, this genus, and so many
-    pending gateways; ``way`` tells the dstates."""
+    """Write the line of a map of this size; ``way`` has the dstates.
+
+    The size has the numbers of places, links and paths, the genus, and the number of pending
+    gateways.
+    """
     places, links, paths, genus, pending = size
     return f"places {places}, links {links}, paths {paths}, genus {genus}, pending {pending}: {way}"
 
 
 class Texts:
-    """The maps of one experience as text, with or without the path axiom; what is the same in many
-    of them is made once."""
+    """The maps of one experience as texts, with or without the path axiom.
+
+    What is the same in many of them is made once.
+    """
 
     def __init__(self, experience: Experience, path_axiom: bool = True):
         self._experience = experience
         self._numbering = Numbering(experience, path_axiom)
-        self._names: dict[DState, str] = {}  # of a dstate, in a line
+        self._names: dict[DState, str] = {}  # dstates as the line of a map names them
         slots = experience.slots
-        self._gateways = [  # by number, as JSON
+        self._gateways = [  # as JSON, by number
             f"[{number // slots}, {number % slots}]"
             for number in range(slots * len(experience.views))
         ]
@@ -91,8 +103,7 @@ class Texts:
         ]
 
     def line(self, found: Found) -> str:
-        """A hypothesis that disbelieves nothing in one line: its size, and the dstate after each
-        step."""
+        """Write a hypothesis that contradicts no view in one line: its size, and its dstates."""
         one = CompactMap(self._numbering, found.at)
         names = self._names
         try:
@@ -111,13 +122,14 @@ class Texts:
         return line_of(size, way)
 
     def document(self, at: Sequence[DState]) -> str:
-        """A hypothesis as JSON text: that of ``map_json``."""
+        """Write a hypothesis as JSON text, the same as ``map_json``."""
         one = CompactMap(self._numbering, at)
         texts, slots = self._gateways, self._experience.slots
         bearing = self._numbering.bearing
         link, faces = one.link, one.faces()
 
         def listed(gateways: Iterable[int]) -> str:
+            """List gateways as JSON text."""
             return f"[{', '.join([texts[gateway] for gateway in gateways])}]"
 
         steps = [f"[{step}, {place}, {slot}]" for step, (place, slot) in enumerate(at)]
@@ -137,7 +149,7 @@ class Texts:
 
 
 class Report:
-    """The answer for one instance, written as it is found."""
+    """The answer for one instance, which is written while maps are found."""
 
     def __init__(
         self,
@@ -181,7 +193,7 @@ class Report:
         if self.truth:
             real = corrected.map_of(found.at).isomorphic(self.truth)
             self.real += real
-        # Where they are minimised, they are told. (Of a million maps this would take long.)
+        # They are written if they are minimised; for a million maps this would take long.
         exceptions = exceptions_of(corrected, found.at) if found.kind in BEST else []
         if self.as_json:
             more: dict[str, Any] = {}
@@ -213,10 +225,13 @@ class Report:
         least: tuple[int, ...] | None = None,
         way: Sequence[str] | None = None,
     ) -> None:
-        """Write what the maps are, and whether they are all; ``nodes`` were searched. Where they
-        may not be all, nothing is said of those that were not found, but what each map costs at
-        ``least``, if that is proved. ``by`` is the way that gave them. Where no map is
-        closed, ``way`` is what stands in the way of one, as ``defaults.in_the_way`` has it."""
+        """Write what the maps are, and whether they are all.
+
+        ``nodes`` is the number of nodes that were searched, and ``by`` is the way that found the
+        maps. If they may not be all, nothing is said of those that were not found, except
+        ``least``, a lower bound on what each map costs, if it is proved. If no map is closed,
+        ``way`` is what stands in the way of one, as ``defaults.in_the_way`` finds it.
+        """
         if self.as_json:
             kind = self.last.kind if self.count or not fault else None
             tail: dict[str, Any] = {"kind": kind, "count": self.count}

@@ -1,4 +1,4 @@
-"""Maps of an experience of which only the first steps count."""
+"""Maps of an experience, of which only the first steps count."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -11,9 +11,16 @@ from topomap.runtime.errors import InputError
 def beginning(
     where: str, at: Any, whole: Experience, experience: Experience, demands: Sequence[str] = ()
 ) -> tuple[DState, ...]:
-    """The dstate after each step of the experience, if ``at``, ``[[T,P,S], ...]``, is a hypothesis
-    of it, or of the whole of which it is the beginning. Raises InputError, one line that begins
-    with ``where``, if it is none."""
+    """Check that ``at``, ``[[T,P,S], ...]``, is a hypothesis of the experience or of the whole.
+
+    The experience is the beginning of the whole.
+
+    Returns:
+        The dstate after each step of the experience.
+
+    Raises:
+        InputError: It is no hypothesis of either. One line that begins with ``where``.
+    """
     if len(at) - 1 not in (whole.steps, experience.steps):
         raise InputError(f"{where}: {len(at) - 1} steps, the instance has {experience.steps}")
     return maps.hypothesis(where, at, whole, demands)[: experience.steps + 1]

@@ -1,6 +1,6 @@
-"""A checker of bisimulations: proofs that no further walk tells two maps apart.
+"""A checker of bisimulations, which prove that no further walk tells two maps apart.
 
-It works from the definition, and shares nothing with what finds them.
+It works from the definition, and shares no code with what finds them.
 """
 
 from collections.abc import Collection, Iterator, Mapping
@@ -9,16 +9,19 @@ from typing import Any
 
 Place = Any
 DState = tuple[Place, int]
-Where = tuple[Place | None, Place | None]  # where the marker lies in each map, if it does
+Where = tuple[Place | None, Place | None]  # where the marker lies in each map, or None
 Pair = tuple[DState, DState, Where]
 
 
 @dataclass(frozen=True)
 class Chart:
-    """A map as plain data: the gateways and landmarks of each place, the gateway at the other
-    end of each link, where the agent stands, and the place where the marker lies, if it is
-    out; with a compass, the compass slot to which slot 0 of each place points; and if it is told
-    which gateways are on one path, the other one of each that is not the end of its path."""
+    """A map as plain data.
+
+    It has the gateways and landmarks of each place, the gateway at the other end of each link, the
+    dstate of the agent, and the place of the marker, if it lies somewhere. With a compass it has
+    the compass slot to which slot 0 of each place points. If it is told which gateways are on one
+    path, it has for each gateway the other one on its path, unless its path ends there.
+    """
 
     slots: int
     gateways: Mapping[Place, Collection[int]]
@@ -31,11 +34,12 @@ class Chart:
 
 
 def faults(one: Chart, other: Chart, related: Collection[Pair], marker: bool) -> Iterator[str]:
-    """What is wrong with a relation, if it is to prove that no walk tells the maps apart by what
-    both predict; with ``marker``, the agent carries one that it may drop once.
+    """Find what is wrong with a relation that should be a bisimulation.
 
-    The dstates where the agent stands are related. Whatever are related look the same, and to
-    each turn there the dstates that it leads to are related, if it leads on in both maps."""
+    The dstates of the agent must be related. Related dstates must look the same; and for each turn
+    that leads on in both maps, the dstates to which it leads must be related. With ``marker``, the
+    agent carries a marker that it may put down once.
+    """
     pairs = set(related)
     start = one.dstate, other.dstate, (one.marker, other.marker)
     if one.slots != other.slots:
@@ -59,7 +63,7 @@ def faults(one: Chart, other: Chart, related: Collection[Pair], marker: bool) ->
 
 
 def pending(one: Chart, other: Chart, related: Collection[Pair]) -> tuple[set[DState], set[DState]]:
-    """The pending gateways that a relation comes to, of each map."""
+    """The pending gateways of each map at which a relation arrives."""
     found: tuple[set[DState], set[DState]] = (set(), set())
     for pair in related:
         for chart, (place, _), gateways in zip((one, other), pair[:2], found, strict=True):
@@ -70,8 +74,11 @@ def pending(one: Chart, other: Chart, related: Collection[Pair]) -> tuple[set[DS
 
 
 def _look(chart: Chart, dstate: DState, marker: Place | None) -> tuple[Any, ...]:
-    """What is seen at a dstate: gateways clockwise of it, landmarks, whether the marker, where it
-    points by the compass, and which gateways are on one path."""
+    """What is seen at a dstate.
+
+    It has the gateways clockwise, the landmarks, whether the marker is there, the direction by the
+    compass, and the pairs of gateways on one path.
+    """
     place, slot = dstate
     gateways = {(other - slot) % chart.slots for other in chart.gateways[place]}
     north = (slot + chart.compass[place]) % chart.slots if place in chart.compass else None
@@ -84,7 +91,7 @@ def _look(chart: Chart, dstate: DState, marker: Place | None) -> tuple[Any, ...]
 
 
 def _ways(one: Chart, other: Chart, pair: Pair) -> Iterator[tuple[DState, DState]]:
-    """Where each turn leads that can be taken in both maps."""
+    """The pairs of dstates to which the turns lead that are possible in both maps."""
     (place, slot), (image, at), _ = pair
     for out in one.gateways[place]:
         way = image, (out - slot + at) % one.slots

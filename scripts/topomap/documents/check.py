@@ -1,5 +1,6 @@
-"""Checkers of maps: ``encodings/check.lp``, and one in Python that works from the definitions
-with networkx. Neither shares anything with what makes the maps.
+"""Two checkers of maps: ``encodings/check.lp``, and one in Python from the definitions.
+
+The latter uses networkx. Neither shares any code with what makes the maps.
 """
 
 from collections import Counter
@@ -17,8 +18,8 @@ from topomap.runtime.folders import ENCODINGS
 At = Sequence[tuple[int, int, int]]  # at(T,P,S)
 Violation = tuple[str, int]
 PATH_RULES = ("path_twice", "path_circular")
-NO_PATH_AXIOM = "no_path_axiom"  # a demand by which a map need not keep them
-LATE = ("closed", "travelled", "perpendicular")  # no step before the last one tells
+NO_PATH_AXIOM = "no_path_axiom"  # with this demand a map need not keep the rules above
+LATE = ("closed", "travelled", "perpendicular")  # rules that are checked after the last step only
 STEP_RULES = {
     *("exactly_one", "naming", "gateway", "view", "landmark", "marker", "schema", "itself"),
     *("compass", "odometry", "length", "same", "apart", "look"),
@@ -26,10 +27,10 @@ STEP_RULES = {
 
 
 def by_rules(experience: Experience, at: At, demands: Sequence[str] = ()) -> set[Violation]:
-    """What ``check.lp`` finds: rules, and the steps after which they are broken.
+    """Find violations by ``check.lp``: rules, and the steps after which they are broken.
 
     ``demands`` are terms: planar, bound(B), closed, travelled, boundary, perpendicular; and
-    no_path_axiom, by which less is demanded.
+    no_path_axiom, which lifts a demand.
     """
     control = clingo.Control(experience.constants())
     control.load(str(ENCODINGS / "check.lp"))
@@ -42,7 +43,7 @@ def by_rules(experience: Experience, at: At, demands: Sequence[str] = ()) -> set
 
 
 def by_definition(experience: Experience, at: At, demands: Sequence[str] = ()) -> set[Violation]:
-    """The same by the map after each step."""
+    """Find violations by the definitions, from the map after each step."""
     found = {("exactly_one", step) for step, *_ in at if not 0 <= step <= experience.steps}
     stands: dict[int, Gateway] = {}
     last = max((0, *(step for step, *_ in at)))
@@ -99,7 +100,7 @@ def by_definition(experience: Experience, at: At, demands: Sequence[str] = ()) -
 
 
 def _contradictions(experience: Experience, stands: dict[int, Gateway]) -> set[Violation]:
-    """What contradicts what is known besides views, of each two steps."""
+    """Find what contradicts what is known besides views, for each two steps."""
     found = set()
     for one, other in combinations(sorted(stands), 2):
         if stands[one][0] != stands[other][0]:
@@ -132,8 +133,10 @@ def _contradictions(experience: Experience, stands: dict[int, Gateway]) -> set[V
 
 
 def _shifts(experience: Experience) -> Sequence[tuple[int, int] | None]:
-    """How far each step moved the agent: a second look not at all, and to the start of a log it is
-    not known."""
+    """How far each step moved the agent.
+
+    A second look does not move it, and to the start of a log the distance is not known.
+    """
     shifts: list[tuple[int, int] | None] = list(experience.shifts)
     for step in experience.looks if shifts else ():
         shifts[step - 1] = shifts[step - 1] or (0, 0)
@@ -145,7 +148,7 @@ def _shifts(experience: Experience) -> Sequence[tuple[int, int] | None]:
 def _ways(
     experience: Experience, stands: dict[int, Gateway]
 ) -> Iterator[tuple[int, Gateway, Gateway]]:
-    """The steps, with the gateways that they leave and arrive by."""
+    """The travels, each with the gateways by which it leaves and arrives."""
     for step, turn in enumerate(experience.turns, 1):
         if turn is not None and step in stands and step - 1 in stands:
             out = _gateway_seen(experience, step - 1, turn, stands[step - 1])
@@ -154,13 +157,12 @@ def _ways(
 
 
 def _off(experience: Experience, slots: int) -> bool:
-    """Whether so many slots, round the circle, are more than bearings may be wrong by."""
+    """Tell whether a difference of slots, round the circle, exceeds the tolerance of bearings."""
     return min(slots % experience.slots, -slots % experience.slots) > experience.tolerance
 
 
 def _gateway_seen(experience: Experience, step: int, slot: int, stands: Gateway) -> Gateway | None:
-    """The gateway of the place where the agent stands after a step that it sees in this slot, if
-    any."""
+    """The gateway of the place that is seen in this slot after a step, if there is one."""
     place, base = stands
     if not experience.tolerance:
         return place, (base + slot) % experience.slots
@@ -171,8 +173,10 @@ def _gateway_seen(experience: Experience, step: int, slot: int, stands: Gateway)
 
 
 def _same_view(experience: Experience, step: int, place: int, slot: int) -> bool:
-    """Whether what is seen after a step is what the first visit of the place saw: the same
-    gateways, as far as bearings are exact, and the same ones of these on one path."""
+    """Tell whether a step sees the same as the first visit of the place.
+
+    The gateways must be the same, as far as bearings are exact, with the same ones on one path.
+    """
     view, star = experience.views[step], experience.views[place]
     stands = place, slot
     there = {
@@ -190,7 +194,7 @@ def _same_view(experience: Experience, step: int, place: int, slot: int) -> bool
 
 
 def _lines(experience: Experience, visit: int) -> set[frozenset[int]]:
-    """The pairs of gateways seen at a visit that are on one path."""
+    """The pairs of gateways on one path at a visit."""
     if experience.straight:
         return {*map(frozenset, experience.straight[visit])}
     half = experience.slots // 2
@@ -201,9 +205,9 @@ def _lines(experience: Experience, visit: int) -> set[frozenset[int]]:
 class Grown:
     """The map that the steps up to ``step`` make.
 
-    ``links``: the gateway at the other end of a link. ``first``: the first step through a gateway.
-    ``ahead``: from each gateway, those at which one arrives who leaves by it and walks straight on,
-    in their order.
+    ``links`` gives the gateway at the other end of a link, and ``first`` the first step through a
+    gateway. ``ahead`` gives for each gateway the gateways of arrival, in order, of a walk that
+    leaves by it and goes straight on.
     """
 
     def __init__(self, experience: Experience, stands: dict[int, Gateway], step: int):
@@ -211,7 +215,7 @@ class Grown:
         places = sorted({place for t, (place, _) in stands.items() if t <= step})
         self.stars = {place: sorted(experience.views[place]) for place in places}
         self.lines: dict[Gateway, Gateway] = {}
-        self.told = bool(experience.straight)  # which gateways are on one path
+        self.told = bool(experience.straight)  # whether it is told which gateways are on one path
         for place in places if self.told else ():
             for one, other in experience.straight[place]:
                 self.lines |= {(place, one): (place, other), (place, other): (place, one)}
@@ -232,49 +236,52 @@ class Grown:
         }
 
     def opposite(self, gateway: Gateway) -> Gateway:
-        """The direction straight across the place. Where it is told which gateways are on one path,
-        that of a path which ends at gateway S is -1 - S."""
+        """The direction on the opposite side of the place.
+
+        Where it is told which gateways are on one path, that of a path which ends at gateway S is
+        -1 - S.
+        """
         place, slot = gateway
         if self.told:
             return self.lines.get(gateway, (place, -1 - slot))
         return place, (slot + self.half) % self.slots
 
     def bearing(self, heading: Gateway) -> Gateway:
-        """A heading by its slot."""
+        """The slot of a heading."""
         place, slot = heading
         return place, slot if slot >= 0 else (self.half - 1 - slot) % self.slots
 
     def paths(self) -> list[list[Gateway]]:
-        """Each path, as its places with the slot of its heading."""
+        """Each path as its places, each with the slot of its heading."""
         paths: set[tuple[Gateway, ...]] = set()
         for place, star in self.stars.items():
             for slot in star:
                 for start in (place, slot), self.opposite((place, slot)):
                     path = [start, *map(self.opposite, self.ahead.get(start, []))]
-                    if path[1:] and path[-1] == start:  # it is circular
+                    if path[1:] and path[-1] == start:  # the path is circular
                         paths.add(tuple(self.one_way(path[1:])))
                     elif self.opposite(start) not in self.links:
                         paths.add(tuple(self.one_way(path)))
         return [list(path) for path in sorted(paths)]
 
     def one_way(self, path: list[Gateway]) -> list[Gateway]:
-        """The least way to write a path down."""
+        """The smallest of the ways to write a path down."""
         return min(self.ways(path))
 
     def ways(self, path: list[Gateway]) -> list[list[Gateway]]:
-        """The ways to write a path down: from either end, and a circular one from any place."""
+        """All ways to write a path down: from either end, or from any place if it is circular."""
         ways = [path, [self.opposite(heading) for heading in reversed(path)]]
         if path and self.links.get(path[-1]) == self.opposite(path[0]):
             ways = [way[n:] + way[:n] for way in ways for n in range(len(way))]
         return ways
 
     def forms(self) -> list[dict[tuple[Gateway, ...], tuple[Gateway, ...]]]:
-        """Of each path the ways to write it down, with the slots of its headings, each with the
-        least of them."""
+        """All ways to write the paths down, with slots of headings, each with the smallest one."""
         every = ([tuple(map(self.bearing, way)) for way in self.ways(p)] for p in self.paths())
         return [dict.fromkeys(ways, min(ways)) for ways in every]
 
     def path_twice(self, _: int) -> bool:
+        """Whether a path contains a place twice."""
         return any(
             place == out[0] and (place, slot) != self.opposite(out)
             for out, arrivals in self.ahead.items()
@@ -282,19 +289,21 @@ class Grown:
         )
 
     def path_circular(self, _: int) -> bool:
+        """Whether a path is circular."""
         return any(self.opposite(out) in arrivals for out, arrivals in self.ahead.items())
 
     def pending(self) -> list[Gateway]:
-        """Gateways without a link."""
+        """The gateways without a link."""
         gateways = [(place, slot) for place, star in self.stars.items() for slot in star]
         return [gateway for gateway in gateways if gateway not in self.links]
 
     def untravelled(self, _: int) -> bool:
+        """Whether some path has one place only."""
         pending = self.pending()
         return any(self.opposite(gateway) not in self.links for gateway in pending)
 
     def embedding(self) -> "nx.PlanarEmbedding[Any]":
-        """The rotation system; a node for each end of a link parts parallel ones."""
+        """The rotation system, with a node for each end of a link to separate parallel links."""
         embedding: nx.PlanarEmbedding[Any] = nx.PlanarEmbedding()
         data: dict[Any, list[Any]] = {
             place: [(place, slot) for slot in star if (place, slot) in self.links]
@@ -314,7 +323,7 @@ class Grown:
         return False
 
     def faces(self) -> list[list[Gateway]]:
-        """Each face as the gateways that its walk leaves by."""
+        """Each face as the gateways by which its walk leaves."""
         embedding = self.embedding()
         seen: set[tuple[Any, Any]] = set()
         faces = []
@@ -326,7 +335,7 @@ class Grown:
         return faces or [[]]
 
     def genus(self) -> int:
-        """Genus, by Euler's formula."""
+        """The genus, by Euler's formula."""
         graph: nx.Graph[Any] = nx.Graph([(out[0], end[0]) for out, end in self.links.items()])
         bare = len(self.stars) - len(graph)
         parts = bare + nx.number_connected_components(graph) if graph else bare
@@ -334,10 +343,11 @@ class Grown:
         return (2 * parts - len(self.stars) + len(self.links) // 2 - faces) // 2
 
     def over(self, bound: int) -> bool:
+        """Whether there are more places than the bound allows."""
         return len(self.stars) > bound
 
     def beside(self, path: list[Gateway]) -> tuple[set[int], set[int]]:
-        """The places at the right and left of a path."""
+        """The places to the right and to the left of a path."""
         sides: tuple[set[int], set[int]] = set(), set()
         for heading in path:
             place, slot = self.bearing(heading)
@@ -350,18 +360,17 @@ class Grown:
         return sides
 
     def across(self, gateway: Gateway) -> frozenset[Gateway]:
-        """A gateway and the one straight across."""
+        """A gateway and the direction on the opposite side."""
         return frozenset((gateway, self.opposite(gateway)))
 
     def name(self, path: list[Gateway]) -> int | frozenset[Gateway]:
-        """The first step along a path; of one that no step travels, its gateways."""
+        """The first step along a path; for a path that no step travels, its gateways."""
         ends = {end for heading in path for end in self.across(heading)}
         steps = [self.first[end] for end in ends if end in self.first]
         return min(steps) if steps else self.across(path[0])
 
     def exceptions(self) -> Iterator[tuple[str, list[list[Gateway]], set[int]]]:
-        """Its exceptions to consistent boundaries: of what kind each is, of which paths, and at
-        which places."""
+        """The exceptions to consistent boundaries: the kind, the paths and the places of each."""
         paths = [(path, Counter(place for place, _ in path)) for path in self.paths()]
         for (path, places), (another, others) in combinations(paths, 2):
             if len(shared := places.keys() & others.keys()) > 1:

@@ -1,7 +1,7 @@
-"""Maps that anyone made, read from JSON, and what is said of them held against ``at``.
+"""Maps that anyone made: they are read from JSON, and what is said of them is kept.
 
-Read: what ``topomap solve --json`` writes, or ``generate --truth``; what ``clingo --outf=2``
-writes; or a list of maps. A map needs only ``at``, ``[[T,P,S], ...]``.
+The file is what ``topomap solve --json`` or ``generate --truth`` writes, what ``clingo --outf=2``
+writes, or a list of maps. A map needs only ``at``, ``[[T,P,S], ...]``.
 """
 
 import json
@@ -26,17 +26,20 @@ from topomap.solver.defaults import WORDS
 from topomap.solver.solving import misreadings
 
 MOST_BYTES_OF_MAPS = 2**32
-LONGER = 10  # times as many dstates as steps: no map of the experience
+LONGER = 10  # a map with so many times as many dstates as steps is not of the experience
 _AT = re.compile(r"at\((-?\d+),(-?\d+),(-?\d+)\)", re.ASCII)
 BEST_FIRST = "closed, best-first"
-CIRCUMSCRIBED = ("circumscribed", "circumscribed so far")  # what --circumscribe gives
+CIRCUMSCRIBED = ("circumscribed", "circumscribed so far")  # the kinds of the maps of --circumscribe
 KINDS = ("consistent", "best", "optimal", "best so far", *CIRCUMSCRIBED, BEST_FIRST, UNPROVED)
 
 
 @dataclass(frozen=True)
 class Document:
-    """Maps, and what is said of all of them; ``where`` names it in messages. Of clingo's answers
-    (``by_clingo``) those numbered in ``worse``, from 0, cost more than others."""
+    """Maps, and what is said of all of them.
+
+    ``where`` names it in messages. Of clingo's answers (``by_clingo``), those numbered in
+    ``worse``, from 0, cost more than others.
+    """
 
     where: str
     maps: list[dict[str, Any]]
@@ -46,15 +49,18 @@ class Document:
 
     @property
     def kind(self) -> str:
-        """What the maps are said to be, if anything is."""
+        """What the maps are said to be, or None."""
         kind = str(self.claims.get("kind") or "")
         unproved = self.claims.get("proved") is False and kind != BEST_FIRST
         return UNPROVED if unproved else kind
 
     @property
     def whole(self) -> bool:
-        """Whether the maps are said to be all of their kind, and may be: none was taken away,
-        and the search was no best-first one, which ends at the first map that it finds."""
+        """Whether the maps are said to be all of their kind, and can be.
+
+        They cannot be if one was taken away, or if the search was best-first, which ends at the
+        first map that it finds.
+        """
         if self.kind in (BEST_FIRST, UNPROVED):
             return False
         count = self.claims.get("count", len(self.maps))
@@ -62,12 +68,14 @@ class Document:
 
     @property
     def best(self) -> list[tuple[int, dict[str, Any]]]:
-        """The maps, by number from 1, but for those that cost more than others."""
+        """The maps, with their numbers from 1, except those that cost more than others."""
         return [one for one in enumerate(self.maps, 1) if one[0] - 1 not in self.worse]
 
     def demands(self) -> Iterator[str]:
-        """What the maps are said to have, or with no_path_axiom need not have, as terms of
-        ``check.lp``."""
+        """The demands that the maps are said to meet, as terms of ``check.lp``.
+
+        With no_path_axiom they need not meet one.
+        """
         for part in self.claims.get("parts", ()):
             if part == "euler":
                 yield "planar"
@@ -80,13 +88,16 @@ class Document:
 
 
 def read_maps(path: str, most: int = MOST_BYTES_OF_MAPS) -> list[Document]:
-    """The maps in a file of ``most`` bytes at most. Raises InputError, one line, where it
-    holds something else."""
+    """Read the maps in a file of at most ``most`` bytes.
+
+    Raises:
+        InputError: There is something else in it. One line.
+    """
     return parse_maps(read_text(path, most), path)
 
 
 def parse_maps(content: str, path: str) -> list[Document]:
-    """The maps in a text; ``path`` names it in errors."""
+    """Read the maps in a text; ``path`` names it in errors."""
     try:
         data = json.loads(content)
     except (ValueError, RecursionError):
@@ -97,8 +108,13 @@ def parse_maps(content: str, path: str) -> list[Document]:
 
 
 def documents(where: str, data: Any) -> list[Document]:
-    """The maps in what was read from JSON: of one instance or of several, by topomap or clingo, or
-    a list of maps; ``where`` names it in errors. Raises InputError, one line."""
+    """Read the maps in what was read from JSON; ``where`` names it in errors.
+
+    They are of one instance or of several, by topomap or clingo, or a list.
+
+    Raises:
+        InputError: There are no maps in it. One line.
+    """
     formats.demand(where, data)
     if isinstance(data, dict) and "Call" in data:
         return [_of_clingo(where, data)]
@@ -113,7 +129,11 @@ def documents(where: str, data: Any) -> list[Document]:
 
 
 def document(where: str, data: Any) -> Document:
-    """The maps in what ``solve --json`` writes. Raises InputError, one line."""
+    """Read the maps in what ``solve --json`` writes.
+
+    Raises:
+        InputError: There are no maps in it. One line.
+    """
     if isinstance(data, list):
         data = {"maps": data}
     if isinstance(data, dict) and "at" in data:
@@ -143,6 +163,7 @@ def document(where: str, data: Any) -> Document:
 
 
 def is_number(value: object) -> bool:
+    """Tell whether a value is a whole number that clingo can hold."""
     return isinstance(value, int) and not isinstance(value, bool) and abs(value) <= LARGEST
 
 
@@ -193,12 +214,12 @@ def _is_at(at: object) -> bool:
 
 
 def noisy(given: list[Document]) -> bool:
-    """Whether some of the maps are said to be allowed to disbelieve what was seen."""
+    """Tell whether some of the maps are said to be allowed to contradict views."""
     return any(one.claims.get("noise") is not None for one in given)
 
 
 def of_instance(documents: list[Document], instance: str) -> list[Document]:
-    """Those of an instance, by the name of its file, where there are several."""
+    """Select the documents of an instance, by the name of its file, if there are several."""
     if len(documents) == 1:
         return documents
     name = Path(instance).name
@@ -212,8 +233,16 @@ def hypothesis(
     demands: Sequence[str] = (),
     rules: Collection[str] | None = None,
 ) -> tuple[DState, ...]:
-    """The dstate after each step of ``at``, ``[[T,P,S], ...]``, if it breaks none of the rules of
-    ``check.lp`` (of all, unless told). Raises InputError, one line, where it does."""
+    """Check that ``at``, ``[[T,P,S], ...]``, breaks none of the rules of ``check.lp``.
+
+    By default all rules are checked.
+
+    Returns:
+        The dstate after each step.
+
+    Raises:
+        InputError: It breaks one. One line.
+    """
     steps = sorted((step, place, slot) for step, place, slot in at)
     wrong = [
         (step, rule)
@@ -239,7 +268,7 @@ def _of_clingo(path: str, data: dict[str, Any]) -> Document:
                 raise ValueError
             wrong = [parse_term(atom) for atom in witness["Value"] if atom[:8] == "misread("]
             misread = misreadings(atom.arguments for atom in wrong)
-            # Under optimisation clingo gives the first of the best maps twice, if asked for all.
+            # When clingo optimises and lists all best maps, it gives the first of them twice.
             if "Costs" in witness and (at, misread) in seen:
                 again = True
             else:
@@ -250,7 +279,7 @@ def _of_clingo(path: str, data: dict[str, Any]) -> Document:
             seen.add((at, misread))
     except (LookupError, TypeError, ValueError, AttributeError, RuntimeError):
         raise InputError(f"{path}: not what clingo --outf=2 writes") from None
-    # Where clingo was to list all answers within a bound, it does not speak of an optimum.
+    # If clingo lists all answers within a bound, it mentions no optimum.
     least = min(costs, default=[])
     listed = isinstance(models := data.get("Models"), dict) and "Optimum" not in models
     worse = frozenset(n for n, cost in enumerate(costs) if cost != least and not listed)
@@ -259,8 +288,10 @@ def _of_clingo(path: str, data: dict[str, Any]) -> Document:
 
 
 def _lacking(data: dict[str, Any], many: int, again: bool) -> str | None:
-    """Why so many answers of clingo may not be all that there are, if so; ``again``: one of the
-    best ones was given twice."""
+    """Say why these may not be all answers of clingo, or None.
+
+    ``again`` tells that one of the best answers was given twice.
+    """
     models = data.get("Models")
     models = models if isinstance(models, dict) else {}
     if models.get("More") != "no" or {"Brave", "Cautious"} & models.keys():
@@ -268,15 +299,20 @@ def _lacking(data: dict[str, Any], many: int, again: bool) -> str | None:
     optimal = models.get("Optimal")
     if optimal is None:
         return None if models.get("Number") == many else "clingo did not print all"
-    # Without --opt-mode=optN it ends at the first best answer, and tells of one in the same words.
+    # Without --opt-mode=optN it ends at the first best answer, in the same words.
     if models.get("Optimum") != "yes" or optimal != many or not (again or optimal > 1):
         return "clingo was not asked for all of the best"
     return None
 
 
 def misread_of(seen: Experience, entry: dict[str, Any]) -> frozenset[Misread]:
-    """What a map says was misread. Raises a LookupError, TypeError or ValueError where it cannot
-    be."""
+    """Read what a map says was misread.
+
+    Raises:
+        LookupError: There is no such step or gateway.
+        TypeError: Something has another type.
+        ValueError: Something has an impossible value.
+    """
     said = entry.get("misread", [])
     signs = frozenset[str]().union(*seen.landmarks)
     found: set[Misread] = set()
@@ -298,13 +334,18 @@ def misread_of(seen: Experience, entry: dict[str, Any]) -> frozenset[Misread]:
 
 
 def list_of(said: Any) -> list[Any]:
+    """Check that what is said is a list.
+
+    Raises:
+        ValueError: It is none.
+    """
     if not isinstance(said, list):
         raise ValueError
     return said
 
 
 def real_map(file: str, experience: Experience, horizon: int | None) -> TopologicalMap:
-    """The real map of an experience, from a file that ``generate --truth`` wrote."""
+    """Read the real map of an experience from a file that ``generate --truth`` wrote."""
     entries = [entry for document in read_maps(file, files.MOST_BYTES) for entry in document.maps]
     if len(entries) != 1:
         raise InputError(f"{file}: {len(entries)} maps, but the real map must be the only one")

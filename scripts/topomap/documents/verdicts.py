@@ -33,13 +33,16 @@ from topomap.model.vocabulary import PROPERTIES
 from topomap.runtime.errors import InputError
 
 PATH_AXIOM = "path axiom"
-RULES_OF = {PATH_AXIOM: PATH_RULES, **{part: (part,) for part in PROPERTIES}}  # that tell of each
+RULES_OF = {PATH_AXIOM: PATH_RULES, **{part: (part,) for part in PROPERTIES}}  # by axiom
 
 
 @dataclass(frozen=True)
 class Axioms:
-    """Which of the axioms and defaults of the theory a map ``breaks``, each with the violations
-    that say so; its genus, and how many gateways are pending."""
+    """Which of the axioms and defaults of the theory a map ``breaks``.
+
+    Each comes with the violations that show it. The genus, and the number of pending gateways, are
+    told, too.
+    """
 
     breaks: dict[str, list[Violation]]
     genus: int
@@ -47,12 +50,12 @@ class Axioms:
 
     @property
     def keeps(self) -> list[str]:
-        """Those that the map does not break."""
+        """The axioms and defaults that the map does not break."""
         return [one for one in RULES_OF if one not in self.breaks]
 
     @property
     def words(self) -> str:
-        """Both in words, such as "breaks closed (3 pending); keeps path axiom, planar"."""
+        """All of them in words, such as "breaks closed (3 pending); keeps path axiom, planar"."""
         details = {"planar": f" (genus {self.genus})", "closed": f" ({self.pending} pending)"}
         told = ", ".join(f"{r} after step {step}" for r, step in self.breaks.get(PATH_AXIOM, ()))
         details[PATH_AXIOM] = f" ({told})"
@@ -60,7 +63,7 @@ class Axioms:
         return f"breaks {broken or 'none'}; keeps {', '.join(self.keeps) or 'none'}"
 
     def document(self) -> dict[str, Any]:
-        """The same as JSON."""
+        """All of them as JSON."""
         return {
             "breaks": self.breaks,
             "keeps": self.keeps,
@@ -70,8 +73,10 @@ class Axioms:
 
 
 def axioms(grown: Grown, violations: Iterable[Violation]) -> Axioms:
-    """Which axioms and defaults a map breaks, by all the violations that there are if each part is
-    demanded of it."""
+    """Find out which axioms and defaults a map breaks.
+
+    ``violations`` are all that there are if each part is demanded of the map.
+    """
     found = [*violations]
     broken = {
         name: _by_step(one for one in found if one[0] in some) for name, some in RULES_OF.items()
@@ -81,8 +86,10 @@ def axioms(grown: Grown, violations: Iterable[Violation]) -> Axioms:
 
 
 def axioms_of(experience: Experience, at: Sequence[DState]) -> Axioms:
-    """Which axioms and defaults a map breaks by definition, of a hypothesis given by its dstate
-    after each step."""
+    """Find out by definition which axioms and defaults a hypothesis breaks.
+
+    It is given by its dstate after each step.
+    """
     steps = [(step, *dstate) for step, dstate in enumerate(at)]
     grown = Grown(experience, dict(enumerate(at)), len(steps) - 1)
     return axioms(grown, by_definition(experience, steps, PROPERTIES))
@@ -90,19 +97,22 @@ def axioms_of(experience: Experience, at: Sequence[DState]) -> Axioms:
 
 @dataclass(frozen=True)
 class Verdict:
-    """What is wrong with a map: rules broken, with steps, and other faults in words. Of a map whose
-    steps break no rule it can be told which ``axioms`` and defaults it breaks, and its
-    ``exceptions`` to consistent boundaries; None: it is not told."""
+    """What is wrong with a map: the rules that are broken, with steps, and other faults in words.
+
+    If its steps break no rule, it can be told which ``axioms`` and defaults the map breaks, and
+    which ``exceptions`` to consistent boundaries it has; None means that this is not told.
+    """
 
     where: str
     violations: list[Violation]
     faults: list[str]
-    short: bool = False  # the map is of part of the steps
+    short: bool = False  # the map is of a part of the steps only
     axioms: Axioms | None = None
     exceptions: list[NamedException] | None = None
 
     @property
     def sound(self) -> bool:
+        """Whether nothing is wrong."""
         return not self.violations and not self.faults
 
     def document(self) -> dict[str, Any]:
@@ -111,7 +121,7 @@ class Verdict:
         return {key: getattr(self, key) for key in keys}
 
     def told(self) -> dict[str, Any]:
-        """What is told of the map besides, as JSON."""
+        """What else is told of the map, as JSON."""
         told: dict[str, Any] = {
             "where": self.where,
             **(self.axioms.document() if self.axioms else {}),
@@ -121,7 +131,7 @@ class Verdict:
         return told
 
     def lines(self) -> Iterator[str]:
-        """What is wrong, and what is told besides, to read."""
+        """What is wrong, and what else is told, as lines to read."""
         if not self.sound:
             broken = [f"violation({rule},{step})" for rule, step in self.violations]
             yield f"{self.where}: {'; '.join(broken + self.faults)}"
@@ -136,9 +146,11 @@ class Verdict:
 
 @dataclass(repr=False)
 class Judged(Reply):
-    """The verdicts on ``count`` maps of an experience of ``steps`` steps, of which ``demands``
-    were asked; ``fault`` says why not all were judged, if so. In an ``if`` it is true when all
-    were judged, and none is unsound."""
+    """The verdicts on ``count`` maps of an experience of ``steps`` steps.
+
+    ``demands`` has the demands on the maps. ``fault`` says why not all maps were judged, or is
+    None. In an ``if`` it is true when all were judged, and none is unsound.
+    """
 
     count: int
     steps: int
@@ -156,10 +168,11 @@ class Judged(Reply):
 
     @property
     def short(self) -> int:
-        """How many of the maps are of part of the steps."""
+        """The number of maps that are of a part of the steps."""
         return sum(verdict.short for verdict in self.verdicts)
 
     def document(self) -> dict[str, Any]:
+        """The verdicts as ``topomap check --json`` writes them."""
         return {
             "demands": self.demands,
             "unsound": [verdict.document() for verdict in self.unsound],
@@ -170,6 +183,7 @@ class Judged(Reply):
         }
 
     def lines(self) -> Iterator[str]:
+        """The verdicts as the lines that ``topomap check`` prints."""
         for verdict in self.verdicts:
             yield from verdict.lines()
         many = words.number(self.count, "map").replace(",", "")
@@ -188,11 +202,16 @@ def verdicts(
     noise: int | None = None,
     every: bool = False,
 ) -> Iterator[Verdict]:
-    """A verdict on each map, by ``check.lp`` and by definition, of what was seen but for what
-    the map says was misread: after ``noise`` steps at most, and as many as its document allows.
-    With ``every`` it tells of each axiom and default whether the map breaks it; that it does is no
-    violation then, unless it is among the ``demands``, or the document says that it does not.
-    Raises InputError if one is much longer than the experience."""
+    """Judge each map by ``check.lp`` and by definition.
+
+    A map is held against what was seen, corrected by what the map says was misread: after at most
+    ``noise`` steps, and at most as many as its document allows. With ``every`` the verdict tells of
+    each axiom and default whether the map breaks it. That it does is then no violation, unless it
+    is among the ``demands``, or the document says that the map does not.
+
+    Raises:
+        InputError: A map is much longer than the experience.
+    """
     for document in documents:
         for number, entry in enumerate(document.maps, 1):
             if len(entry["at"]) > LONGER * (seen.steps + 1):
@@ -257,7 +276,7 @@ def _by_step(violations: Iterable[Violation]) -> list[Violation]:
 def _mistaken(
     corrected: Experience, misread: frozenset[Misread], steps: int, most: int | None
 ) -> Iterator[str]:
-    """What is wrong with what is said to be misread, in a map of so many steps."""
+    """Find what is wrong with what a map of so many steps says was misread."""
     wrong = {step for step, _ in misread}
     if wrong and most is None:
         yield "misread: it is not said how many views may be wrong (noise)"
@@ -272,7 +291,7 @@ def _mistaken(
 def faults(
     experience: Experience, document: Document, entry: dict[str, Any], at: At
 ) -> Iterator[str]:
-    """What is said of a map, by itself or with the others, and does not follow from ``at``."""
+    """Find what is said of a map, alone or with others, that does not follow from ``at``."""
     grown = Grown(experience, {step: (place, slot) for step, place, slot in at}, len(at) - 1)
     for key, said in entry.items():
         if key in ("at", "real", "misread"):
@@ -307,7 +326,7 @@ def _noise(entry: dict[str, Any], claims: dict[str, Any]) -> list[int]:
 
 
 def _cost(grown: Grown, claims: dict[str, Any]) -> list[int]:
-    """What was minimised, most important first."""
+    """What was minimised, the most important number first."""
     parts = claims.get("parts", ())
     optimal = claims.get("optimal", False)
     minimal = "minimal" in parts or optimal or claims.get("kind") == BEST_FIRST
@@ -318,6 +337,7 @@ def _cost(grown: Grown, claims: dict[str, Any]) -> list[int]:
 
 def _places(grown: Grown, experience: Experience, said: Any) -> bool:
     def in_order(places: Any) -> list[dict[str, Any]]:
+        """Put the places, their gateways and their landmarks in order."""
         numbers = (number for place in places for number in (place["place"], *place["gateways"]))
         if not all(map(is_number, numbers)):
             raise ValueError
@@ -346,6 +366,7 @@ def _paths(grown: Grown, _: Experience, said: Any) -> bool:
 
 def _faces(grown: Grown, _: Experience, said: Any) -> bool:
     def from_least(face: list[Gateway]) -> list[Gateway]:
+        """Begin a face at its smallest gateway."""
         start = face.index(min(face)) if face else 0
         return face[start:] + face[:start]
 
@@ -355,14 +376,14 @@ def _faces(grown: Grown, _: Experience, said: Any) -> bool:
 
 def _exceptions(grown: Grown, _: Experience, said: Any) -> bool:
     def named(name: Any) -> Any:
-        """A step; or, of a path that is not travelled, its gateway and the one opposite."""
+        """The step that names a path; for one not travelled, its gateway and the opposite."""
         if is_number(name):
             return name
         place, slot = name.split(".")
         return grown.across((int(place), int(slot)))
 
     def plain(one: Any) -> Any:
-        """An exception, of numbers and texts only."""
+        """Convert an exception to numbers and texts."""
         if one.keys() != {"kind", "paths", "places"} or not all(map(is_number, one["places"])):
             raise ValueError
         return one["kind"], frozenset(map(named, one["paths"])), frozenset(one["places"])

@@ -1,7 +1,7 @@
-"""What maps of one experience agree and differ on.
+"""On what the maps of one experience agree, and where they differ.
 
-A place goes by the step of its first visit, and its gateways by the slots clockwise from that
-where the agent stood then; so they can be compared from map to map.
+A place is named by the step of its first visit, and its gateways by the slots clockwise from the
+agent's gateway at that visit, so that they can be compared between maps.
 """
 
 from collections import Counter, defaultdict
@@ -13,10 +13,13 @@ from topomap.model.topology import Gateway, Place
 
 
 class Agreement:
-    """Of maps, each given by the dstate after each step. ``visits``: of each map the steps after
-    which the agent is at a place; ``one``: the steps that are at one place in all maps, where
-    there are two or more; ``differ``: each step after which the agent is not at the same place
-    and gateway in all maps, and where it is in which."""
+    """What maps, each given by the dstate after each step, have in common.
+
+    ``visits`` has for each map the steps after which the agent is at a place. ``one`` has the steps
+    that are at one place in all maps, in groups of two or more. ``differ`` has the steps after
+    which the agent is not at the same place and gateway in all maps, with the dstates and their
+    maps.
+    """
 
     def __init__(self, ats: Sequence[Sequence[Gateway]], seen: Experience):
         self.ats, self.slots = ats, seen.slots
@@ -37,7 +40,7 @@ class Agreement:
         ]
 
     def _told(self, step: int) -> list[tuple[str, str]]:
-        """Where the agent is after a step, and in which maps."""
+        """The dstates after a step, each with its maps."""
         told: dict[str, list[int]] = defaultdict(list)
         for number, (at, visits) in enumerate(zip(self.ats, self.visits, strict=True), 1):
             place, slot = at[step]
@@ -52,7 +55,7 @@ class Agreement:
         return [(where, words.listed(numbers)) for where, numbers in told.items()]
 
     def strange(self, number: int) -> set[Place]:
-        """The places of a map, by its index, that are other visits in another map."""
+        """The places of a map, by its index, that have other visits in another map."""
         return {
             place
             for place, steps in self.visits[number].items()
@@ -60,5 +63,5 @@ class Agreement:
         }
 
     def having(self, out: Gateway, end: Gateway) -> int:
-        """How many of the maps have a link."""
+        """The number of maps that have a link."""
         return self._links[out, end]

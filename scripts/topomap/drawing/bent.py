@@ -1,8 +1,8 @@
 """Drawings with bent lines, of maps of genus 0.
 
 A drawing is a mesh of triangles (``mesh``). It starts from a drawing on a grid, in which no
-triangle is folded, and is bent towards a good shape (``springs``) by steps that fold none, so
-nothing comes to cross and every rotation stays right.
+triangle is folded, and is bent towards a good shape (``springs``) by steps that fold no triangle.
+So no crossing arises, and every rotation stays right.
 """
 
 from collections.abc import Mapping, Sequence
@@ -19,8 +19,8 @@ from topomap.drawing.springs import Springs, Term
 from topomap.model.topology import Gateway, Place, TopologicalMap
 from topomap.runtime.watch import Late, never
 
-# How much triangles resist, and how much places and lines keep apart, one after the other; what is
-# stuck where triangles are flat comes free when they resist more again.
+# The weights of triangles, and of places and lines that keep apart, for one descent after the
+# other. What is stuck where triangles are flat comes free when they resist more again.
 STAGES = (
     (1.0, 1.0),
     (0.1, 4.0),
@@ -32,15 +32,16 @@ STAGES = (
     (0.01, 40.0),
     (0.002, 40.0),
 )
-ANEW = (100.0, 0.0), (10.0, 0.0)  # before these, if the drawing is not legible
-FREE = (0.1, 80.0), (0.01, 200.0), (0.002, 600.0)  # if then a line still passes under a place
-AGAIN = 2  # times at most, and not in fewer steps
-STEPS = 120  # of the descent, at most, with each weight
-WORK = 600_000  # numbers that all steps changed, together: then a drawing is not begun again
-MOST_POINTS = 20_000  # of a mesh
-FINE = 3_000  # of a mesh that is made finer
-LITTLE = 1e-9  # stiffness that leaves none without any
-# A matrix that is positive definite is solved without exchanging rows.
+ANEW = (100.0, 0.0), (10.0, 0.0)  # they come first if the drawing is not legible
+# They are added if a line still passes under a place.
+FREE = (0.1, 80.0), (0.01, 200.0), (0.002, 600.0)
+AGAIN = 2  # the largest number of repetitions, if ``steps`` is not reduced
+STEPS = 120  # the largest number of steps of the descent with each weight
+WORK = 600_000  # numbers changed by all steps together, after which no drawing is begun again
+MOST_POINTS = 20_000  # the largest number of points of a mesh
+FINE = 3_000  # the largest number of points of a mesh that is made finer
+LITTLE = 1e-9  # a little stiffness, so that no number is without any
+# A positive definite matrix is solved without exchanging rows.
 PIVOTS: Any = {"diag_pivot_thresh": 0.0, "options": {"SymmetricMode": True}}
 
 
@@ -51,10 +52,14 @@ def bent(
     late: Late = never,
     known: Mapping[Place, Points] | None = None,
 ) -> dict[Gateway, Points]:
-    """Lines with bends, in a drawing in which no triangle of the mesh is folded; they go on
-    straight through the crossings; places are near to where they are ``known`` to be. If a line
-    passes under a place, more bends are tried. Raises TooLong if the drawing is not legible when
-    the time is over."""
+    """Draw lines with bends, in a drawing in which no triangle of the mesh is folded.
+
+    Lines go straight through the crossings, and places are near to where they are ``known`` to be.
+    If a line passes under a place, more bends are tried.
+
+    Raises:
+        TooLong: The drawing is not legible when the time is over.
+    """
     mesh, x = _drawn(Mesh(world, crossings, 1, known), steps, late)
     if steps >= STEPS and not late() and mesh.size <= FINE and not _clear(mesh, x):
         with suppress(TooLong):
@@ -65,7 +70,7 @@ def bent(
 
 
 def _drawn(mesh: Mesh, steps: int, late: Late) -> tuple[Mesh, Points]:
-    """A mesh, and its numbers in a good drawing."""
+    """Make a mesh, and find the numbers of a good drawing of it."""
     if mesh.size > MOST_POINTS or late():
         raise TooLong
     points = mesh.start(late)
@@ -89,7 +94,7 @@ def _drawn(mesh: Mesh, steps: int, late: Late) -> tuple[Mesh, Points]:
 
 
 def _clear(mesh: Mesh, x: Points) -> bool:
-    """Whether no line passes under a place that is none of its ends."""
+    """Tell whether no line passes under a place that is not one of its ends."""
     return not _under(mesh, x)
 
 
@@ -100,8 +105,10 @@ def _under(mesh: Mesh, x: Points) -> list[Passing]:
 
 
 def _end(mesh: Mesh, out: Gateway) -> Gateway:
-    """The gateway at the end of a line, which goes straight through crossings; of a stub its
-    own."""
+    """The gateway at the end of a line, which goes straight through crossings.
+
+    The end of a stub is its own gateway.
+    """
     world, end = mesh.world, mesh.world.links.get(out, out)
     while end[0] in mesh.crossings:
         end = world.links[world.opposite(end)]
@@ -124,9 +131,11 @@ def _lines(mesh: Mesh, x: Points) -> dict[Gateway, Points]:
 
 
 def _descend(shape: Springs, x: Points, curves: "Curvature", steps: int, late: Late) -> Points:
-    """Numbers of less energy, by Newton's method, the free ones changed. The curvature of each
-    term is taken for no less than nothing; steps go only to where the energy is finite, so that
-    what was never folded is not."""
+    """Minimise the energy over the free numbers by Newton's method.
+
+    A negative curvature of a term is replaced by 0. Steps lead only to where the energy is finite,
+    so that no triangle is folded.
+    """
     value, terms = shape(x)
     idle = 0
     for _ in range(steps):
@@ -150,19 +159,21 @@ def _descend(shape: Springs, x: Points, curves: "Curvature", steps: int, late: L
 
 
 class Curvature:
-    """The curvature of an energy by the numbers that are ``free``: a symmetric matrix. Where its
-    entries are is found out once; but not for the last kind of terms, which are others each
-    time."""
+    """The Hessian of an energy with respect to the ``free`` numbers: a symmetric matrix.
+
+    The positions of its entries are computed once, except for the last kind of terms, which changes
+    each time.
+    """
 
     def __init__(self, fixed: Sequence[Numbers], free: Numbers, total: int) -> None:
         self.total, self.free = total, free
-        self.solved = 0  # how often
+        self.solved = 0  # the number of solutions
         self.number = np.full(self.total, -1)
         self.number[free] = np.arange(len(free))
         places = [self._places(columns) for columns in fixed]
         place = np.concatenate(places)
         self.kept = place >= 0
-        # The diagonal is in the matrix in any case.
+        # The diagonal is always in the matrix.
         size = len(free)
         keys, at = np.unique(
             np.concatenate([place[self.kept], np.arange(size) * (size + 1)]), return_inverse=True
@@ -173,8 +184,10 @@ class Curvature:
         self.starts = np.searchsorted(keys // size, np.arange(size + 1))
 
     def _places(self, columns: Numbers) -> Numbers:
-        """Where in the matrix each pair of the numbers of each term is, column by column; -1 if
-        one of them is not free."""
+        """The position in the matrix of each pair of numbers of each term, column by column.
+
+        It is -1 if one of them is not free.
+        """
         of = self.number[columns]
         one, other = of[:, None, :], of[None, :, :]
         place = one + len(self.free) * other
@@ -187,13 +200,13 @@ class Curvature:
         return sparse.csc_matrix((data, self.rows, self.starts), (size, size))
 
     def slope(self, terms: list[Term]) -> Points:
-        """How the energy grows by each free number."""
+        """The gradient of the energy by the free numbers."""
         column = np.concatenate([columns.ravel() for columns, *_ in terms])
         pull = np.concatenate([(ways * pull).ravel() for _, ways, pull, _ in terms])
         return np.asarray(np.bincount(column, pull, self.total)[self.free], float)
 
     def solve(self, terms: list[Term], slope: Points) -> Points:
-        """The step by which the slope would grow so much."""
+        """The step that would change the gradient by so much."""
         self.solved += 1
         *fixed, last = (_products(ways, stiff) for _, ways, _, stiff in terms)
         curvature = self._matrix(np.concatenate(fixed)[self.kept])

@@ -1,4 +1,4 @@
-"""Whether lines pass under places that are none of their ends."""
+"""Lines that pass under places which are not their ends."""
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
 
@@ -8,11 +8,11 @@ from scipy.spatial import KDTree
 from topomap.drawing.mesh import Points, cross
 from topomap.model.topology import Gateway, Place, TopologicalMap
 
-RADIUS = 0.15  # of a place's circle, where a link is of length 1
-CLEAR = RADIUS + 0.02  # the least distance of a line from the middle of a place that it passes by
-DETOURS = 60  # of the lines of a drawing, at most
-AROUND = 1.05, 1.2, 1.5  # how far from a place a detour may lead, in least distances
-Passing = tuple[int, int, Place]  # a line by its number, a piece of it, and the place
+RADIUS = 0.15  # the radius of a place's circle, if a link has length 1
+CLEAR = RADIUS + 0.02  # the least distance of a line from the middle of another place
+DETOURS = 60  # the largest number of detours in a drawing
+AROUND = 1.05, 1.2, 1.5  # distances of a detour from a place, in least distances
+Passing = tuple[int, int, Place]  # the number of a line, a piece of it, and the place
 
 
 def passing(
@@ -20,8 +20,10 @@ def passing(
     lines: Sequence[tuple[Collection[Place], Points]],
     clear: float = CLEAR,
 ) -> list[Passing]:
-    """Which lines come nearer to the middle of a place than ``clear``; each line is given with the
-    places that are its ends, to which it may come."""
+    """Find which lines come nearer to the middle of a place than ``clear``.
+
+    Each line is given with the places that are its ends, to which it may come.
+    """
     if not places or not lines:
         return []
     names = list(places)
@@ -49,8 +51,10 @@ def passing(
 def under(
     world: TopologicalMap, lines: Mapping[Gateway, Points], clear: float = CLEAR
 ) -> list[tuple[Gateway, Place]]:
-    """The lines of a drawn map that pass under a place that is none of their ends, each by one of
-    its gateways, with the place. Places are where their lines begin."""
+    """Find the lines of a drawn map that pass under a place that is not one of their ends.
+
+    Each is given by one of its gateways, with the place. Places are where their lines begin.
+    """
     once = [out for out in lines if out not in world.links or out <= world.links[out]]
     ends = [({out[0], world.links.get(out, out)[0]}, lines[out]) for out in once]
     places = {place: line[0] for (place, _), line in lines.items()}
@@ -59,8 +63,11 @@ def under(
 
 
 def led_round(world: TopologicalMap, lines: Mapping[Gateway, Points]) -> dict[Gateway, Points]:
-    """The lines of a drawn map, led round the places that they would pass under, where they then
-    cross nothing that they did not cross before. Their first and last pieces stay as they are."""
+    """Lead the lines of a drawn map round the places under which they would pass.
+
+    This is done where they then cross nothing that they did not cross before. Their first and last
+    pieces stay as they are.
+    """
     led = dict(lines)
     once = [out for out, _ in world.edges() if out in lines]
     ends = [{out[0], world.links[out][0]} for out in once]
@@ -97,7 +104,7 @@ def led_round(world: TopologicalMap, lines: Mapping[Gateway, Points]) -> dict[Ga
 
 
 def _spots(a: Points, b: Points, place: Points) -> Iterator[Points]:
-    """Points beside a place, by which a piece from one point to another may be led round it."""
+    """Points beside a place by which a piece from one point to another may be led round it."""
     way = (b - a) / max(1e-9, float(np.hypot(*(b - a))))
     near = a + np.clip((place - a) @ way, 0, np.hypot(*(b - a))) * way
     aside = near - place
@@ -110,7 +117,7 @@ def _spots(a: Points, b: Points, place: Points) -> Iterator[Points]:
 
 
 def _cross(a: Points, b: Points, pieces: Points) -> bool:
-    """Whether a piece of a line meets any of others, but for those that begin or end with it."""
+    """Tell whether a piece of a line meets any of others that do not share an end with it."""
     c, d = pieces[:, 0], pieces[:, 1]
     shared = [(abs(p - q) < 1e-9).all(-1) for p in (a, b) for q in (c, d)]
     side = cross(b - a, c - a) * cross(b - a, d - a)

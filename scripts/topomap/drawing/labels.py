@@ -1,4 +1,4 @@
-"""Where texts beside a place go."""
+"""Where the texts beside a place go."""
 
 import math
 from collections.abc import Sequence
@@ -6,8 +6,10 @@ from itertools import pairwise
 
 
 def gaps(directions: Sequence[float]) -> list[tuple[float, float]]:
-    """The gaps between directions, in radians: the width of each, and its middle; those up and
-    to the right, where a text is looked for, before the others of their width."""
+    """The gaps between directions, in radians: the width of each, and its middle.
+
+    Of gaps of one width, those up and to the right come first, where a text is looked for.
+    """
     order = sorted(directions) or [-2.4]
     pairs = pairwise([*order, order[0] + 2 * math.pi])
     found = [(round(b - a, 1), (a + b) / 2) for a, b in pairs]

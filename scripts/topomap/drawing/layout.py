@@ -1,11 +1,11 @@
 """Where the places, links and pending gateways of a map are drawn.
 
-A map of genus 0 is drawn without crossings; of one of higher genus a planar part is, and the
-other links are led through its faces, across as few links as can be. Around each place the
-gateways leave in their order, clockwise as the agent turns. If all links can be straight and in
-the directions of one compass, they are. If it is known where places are, they are drawn there, or
-as near as can be without a crossing, and north is up. What takes too long is drawn plainly, and
-says so.
+A map of genus 0 is drawn without crossings. Of a map of higher genus a planar part is drawn like
+this, and the other links are led through its faces, across as few links as possible. Around each
+place the gateways leave in their order, clockwise as the agent turns. If all links can be straight
+and in the directions of one compass, they are. If it is known where places are, they are drawn
+there, or as near as possible without a crossing, and north is up. What takes too long is drawn
+plainly, and the drawing says so.
 """
 
 import random
@@ -27,25 +27,27 @@ from topomap.drawing.springs import STUB
 from topomap.model.topology import Gateway, Place, TopologicalMap
 from topomap.runtime.watch import Late, never
 
-GAP = 1.0  # between components
-SHORTEST = 0.4  # link in a drawing by the compass
-NARROW = 0.05  # that lines may be to each other in it
-DISTORTED = 0.5  # the difference of a shape from what is known, in characters
+GAP = 1.0  # the space between components
+SHORTEST = 0.4  # the least length of a link in a drawing by the compass
+NARROW = 0.05  # the least distance between lines in it
+DISTORTED = 0.5  # the largest difference from known positions in a terminal
 QUARTER = [np.array([[x, y], [-y, x]], float) for x, y in ((1, 0), (0, 1), (-1, 0), (0, -1))]
 ELSEWHERE = "some places are drawn elsewhere than they are"
-TRIES, LENGTHS = 150, (1, 1, 1, 2, 3)  # of other drawings, and of links in them
+# The number of other drawings that are tried, and lengths of links in them.
+TRIES, LENGTHS = 150, (1, 1, 1, 2, 3)
 
 
 @dataclass(frozen=True)
 class Layout:
-    """A drawing, y upwards, links about 1 long.
+    """A drawing with y upwards, in which links are about 1 long.
 
-    ``places``: a point each. ``lines``: of each gateway the line that leaves by it: to the place
-    at the other end, or to the end of a stub. ``faces``: those of a planar map, each as the
-    gateways that its walk leaves by, the face on their right; ``outer``: the number of the outer
-    one. ``crossing``: of another map the links that are not in the planar part. ``note`` says that
-    the drawing is plain, if it is: then no faces are told, nor which links cross others.
-    ``elsewhere``: it is known where places are, but some are drawn elsewhere.
+    ``places`` has a point for each place. ``lines`` has for each gateway the line that leaves by
+    it, to the place at the other end or to the end of a stub. ``faces`` has those of a planar map,
+    each as the gateways by which its walk leaves, with the face on their right; ``outer`` is the
+    number of the outer one. ``crossing`` has, for a map that is not planar, the links that are not
+    in the planar part. ``note`` says that the drawing is plain, if it is: then neither faces nor
+    crossings are told. ``elsewhere`` tells that it is known where places are, but that some are
+    drawn elsewhere.
     """
 
     places: dict[Place, Points]
@@ -57,7 +59,7 @@ class Layout:
     elsewhere: bool = False
 
     def outline(self, face: list[Gateway]) -> Points:
-        """The line round a face."""
+        """The line around a face."""
         return np.concatenate([self.lines[gateway][:-1] for gateway in face])
 
 
@@ -68,11 +70,14 @@ def layout(
     late: Late = never,
     where: Where | None = None,
 ) -> Layout:
-    """A drawing of a map. ``where`` tells where places are, and what is up; where that is not known
-    of all places, ``ahead`` is a gateway that is left to the right of the
-    picture (else the first one); fewer ``steps`` do for a small picture. Several components stand
-    side by side, and then no faces are told, for they share the outer one. The drawing is plain if
-    it is ``late`` before there is a better one, or if that takes more work than one drawing may."""
+    """Draw a map.
+
+    ``where`` tells where places are, and what is up. If that is not known of all places, the
+    gateway ``ahead`` (by default the first one) leaves to the right of the picture. Fewer ``steps``
+    are enough for a small picture. Several components stand side by side, and then no faces are
+    told, because the components share the outer one. The drawing is plain if it is ``late`` before
+    there is a better one, or if that would take more work than one drawing may.
+    """
     parts = world.parts()
     if len(parts) > 1:
         return _beside([layout(part, _there(ahead, part), steps, late, where) for part in parts])
@@ -95,8 +100,10 @@ def layout(
 def _placed(
     world: TopologicalMap, known: Targets | None, late: Late
 ) -> dict[Gateway, Points] | None:
-    """Straight lines: between places where they are known to be, or by the compass, if places are
-    then about there."""
+    """Draw straight lines between places where they are known to be.
+
+    They are also drawn by the compass, if places are then about there.
+    """
     for placed in at_their_places(world, known) if known else ():
         if not _meet(world, placed) and not under(world, placed):
             return placed
@@ -112,8 +119,10 @@ def straight(
     late: Late = never,
     where: Where | None = None,
 ) -> Layout | None:
-    """A drawing by the compass, if there is one; of the links that are not in the planar part
-    only the beginning and the end, as stubs. It is turned by quarters only."""
+    """Draw by the compass, if that is possible; the drawing is turned by quarters only.
+
+    Of the links that are not in the planar part only the beginning and the end are drawn, as stubs.
+    """
     parts = world.parts()
     if len(parts) > 1:
         drawn = [straight(part, _there(ahead, part), late, where) for part in parts]
@@ -127,7 +136,7 @@ def straight(
     known = targets(world, where)
     if lines is None or (known and difference(lines, known) > DISTORTED):
         return None
-    if known:  # from the way ahead to the right, on by quarters to where it should be
+    if known:  # the way ahead leads to the right; then it is turned by quarters
         level = _turned(world, lines, ahead, None).lines
         x, y = _way(turned(level, known), ahead)
         quarters = round(float(np.arctan2(y, x)) / (np.pi / 2)) % 4
@@ -139,18 +148,18 @@ def straight(
 
 
 def _way(lines: Mapping[Gateway, Points], ahead: Gateway | None) -> Points:
-    """The direction of a line, of the first one if none is named."""
+    """The direction of a line; by default that of the first one."""
     line = lines[ahead or next(iter(lines))]
     return np.asarray(line[1] - line[0])
 
 
 def _there(gateway: Gateway | None, part: TopologicalMap) -> Gateway | None:
-    """The gateway, if it is of this part of a map."""
+    """The gateway, if it belongs to this part of a map."""
     return gateway if gateway is not None and gateway[0] in part.stars else None
 
 
 def _beside(drawings: Sequence[Layout]) -> Layout:
-    """Drawings in a row, from left to right."""
+    """Put drawings in a row, from left to right."""
     places: dict[Place, Points] = {}
     lines: dict[Gateway, Points] = {}
     crossing: list[tuple[Gateway, Gateway]] = []
@@ -173,7 +182,7 @@ def _layout(
     ahead: Gateway | None,
     known: Targets | None,
 ) -> Layout:
-    """The drawing, with what it shows of the map."""
+    """Make the drawing, with what it shows of the map."""
     crossing = left_out(part, world)
     faces, outer = ([], -1) if crossing else faces_of(world)
     laid = _turned(world, lines, ahead, known)
@@ -188,8 +197,11 @@ def _turned(
     ahead: Gateway | None,
     known: Targets | None,
 ) -> Layout:
-    """Places and lines, turned so that places are where they are known to be as nearly as can be,
-    or else so that ``ahead`` leads to the right."""
+    """Turn places and lines.
+
+    Places come as near as possible to where they are known to be; otherwise ``ahead`` leads to the
+    right.
+    """
     first = ahead or next(world.gateways(), None)
     if first is None:
         return Layout({place: np.zeros(2) for place in world.stars}, {}, [], -1, [])
@@ -205,8 +217,11 @@ def _turned(
 
 
 def compass(world: TopologicalMap) -> tuple[dict[Place, int], bool]:
-    """The direction of each place's slot 0, in slots clockwise from that of the first place,
-    if links arrive as they leave; and whether that can be so for every link."""
+    """The direction of each place's slot 0, in slots clockwise from that of the first place.
+
+    It is as if links arrived in the direction in which they leave. It is told, too, whether that is
+    possible for every link.
+    """
     north = {next(iter(world.stars)): 0}
     for place in (waiting := list(north)):
         for slot in sorted(world.stars[place]):
@@ -229,9 +244,11 @@ def _direction(angle: float, slots: int) -> Points:
 
 
 def _by_compass(world: TopologicalMap, late: Late = never) -> dict[Gateway, Points] | None:
-    """Lines in the directions of the compass, as near as can be to length 1, or if they meet or
-    become short, to some other lengths; None if they do so by all that are tried, or are tried
-    before it is late."""
+    """Draw lines in the directions of the compass, with lengths as near to 1 as possible.
+
+    If lines meet or become too short, other lengths are tried. It is None if they do so with all
+    that are tried, or are tried before it is late.
+    """
     north, fits = compass(world)
     if not fits:
         return None
@@ -240,8 +257,8 @@ def _by_compass(world: TopologicalMap, late: Late = never) -> dict[Gateway, Poin
     starts, ends = (np.array([number[edge[n][0]] for edge in edges], int) for n in (0, 1))
     along = np.array([_direction(north[p] + s, world.slots) for (p, s), _ in edges]).reshape(-1, 2)
     aside = 100 * along[:, ::-1] * [-1, 1]
-    # Two rows for each link, how far it leads along its direction, and a hundred times how far
-    # aside; and two for the first place.
+    # Two rows for each link: how far it leads along its direction, and a hundred times how far
+    # aside; and two rows for the first place.
     row = np.repeat(2 + np.arange(2 * len(edges)).reshape(-1, 2), 4, axis=0).reshape(-1, 4, 2)
     column = np.stack([2 * ends, 2 * ends + 1, 2 * starts, 2 * starts + 1], 1)
     entry = np.stack([np.hstack([along, -along]), np.hstack([aside, -aside])], 2)
@@ -285,7 +302,7 @@ def _lines(
 
 
 def _meet(world: TopologicalMap, lines: Mapping[Gateway, Points]) -> bool:
-    """Whether straight lines meet elsewhere than at their places."""
+    """Tell whether straight lines meet elsewhere than at their places."""
     once = [g for g in lines if g not in world.links or g < world.links[g]]
     number = {place: index for index, place in enumerate(world.stars)}
     places = np.array(
@@ -299,7 +316,7 @@ def _meet(world: TopologicalMap, lines: Mapping[Gateway, Points]) -> bool:
         if not beside.any():
             continue
         (a, b), (c, d) = drawn[n], drawn[n + 1 :][beside].transpose(1, 0, 2)
-        # The distance of each line's ends from this line, and the other way round.
+        # The distances of each line's ends from this line, and of this line's ends from each line.
         ends = _distance(c, a, b), _distance(d, a, b), _distance(a, c, d), _distance(b, c, d)
         side = [cross(b - a, p - a) for p in (c, d)]
         over = [cross(d - c, p - c) for p in (a, b)]
@@ -310,6 +327,6 @@ def _meet(world: TopologicalMap, lines: Mapping[Gateway, Points]) -> bool:
 
 
 def _distance(p: Points, a: Points, b: Points) -> Points:
-    """Of points from line segments."""
+    """The distances of points from line segments."""
     along = ((p - a) * (b - a)).sum(-1) / ((b - a) ** 2).sum(-1)
     return np.asarray(np.linalg.norm(p - a - np.clip(along, 0, 1)[..., None] * (b - a), axis=-1))

@@ -1,9 +1,9 @@
 """Where the places of a map are, if it is a map of a world whose places have positions.
 
-Which place of the world is which place of the map is told by the links: each place is one of the
-world with gateways in the same slots, each link one of its links, and no two places are one. If no
-world is like the map, places are found by names: a landmark that one place of the map has, and one
-place of the world has it as its landmark or its name.
+The links tell which place of the world is which place of the map: each place is one of the world
+with gateways in the same slots, each link is one of its links, and no two places are one. If the
+map fits nowhere in the world, places are found by names: a landmark that only one place of the map
+has, and that is the landmark or the name of only one place of the world.
 """
 
 from collections import Counter
@@ -17,16 +17,18 @@ from topomap.model.terms import spelt
 from topomap.model.topology import Gateway, Place, TopologicalMap, label
 from topomap.worlds.plan import Plan
 
-ENOUGH = 3  # places that are found by name, for the others to be put between them
-ROUNDS = 300  # in which those are
-WORK = 2_000_000  # gateways that are looked at, at most
-SEVERAL = 16  # ways to lay a map onto a world: more are not looked for
-ALIKE = 0.05  # of the size: drawings that differ by less from what is known are as good
+ENOUGH = 3  # the least number of places found by name, between which the others are put
+ROUNDS = 300  # the number of rounds in which the others are put there
+WORK = 2_000_000  # the largest number of gateways that are examined
+SEVERAL = 16  # so many ways to lay a map on a world are looked for
+ALIKE = 0.05  # ways to lay a map are equally good if their ``_unlike`` differ by less
 
 
 class Likeness(NamedTuple):
-    """Where the places of a map are, None if that is not told; what there is to say of it; and
-    whether the map is a part of the world."""
+    """Where the places of a map are (None if that is not known), and what is said about it.
+
+    ``laid`` tells whether the map is a part of the world.
+    """
 
     where: Where | None
     note: str
@@ -36,9 +38,11 @@ class Likeness(NamedTuple):
 def likeness(
     world: TopologicalMap, real: TopologicalMap, plan: Plan, known: Where | None = None
 ) -> Likeness:
-    """Where the places of a map are, by the places of a real world and the plan of it. If the map
-    can be laid onto the world in several ways, that which is most like ``known``, what was measured
-    of where places are, is taken."""
+    """Find where the places of a map are, by the places of a real world and the plan of it.
+
+    ``known`` tells where places are by what was measured. If the map can be laid on the world in
+    several ways, the way that is most like ``known`` is taken.
+    """
     if not all(place in plan.points for place in real.stars):
         return Likeness(None, "the world does not tell where its places are")
     names = _names(real, plan)
@@ -63,8 +67,11 @@ def likeness(
 
 
 def _unlike(where: Where, known: Where) -> float:
-    """How far places are from where they were measured, moved and in another scale but not turned,
-    as a share of the size; 0 if too little is known."""
+    """How far places are from where they were measured, as a share of the size.
+
+    The measured points are moved and scaled so that they fit best, but are not turned. It is 0 if
+    too little is known.
+    """
     both = [place for place in where if place in known]
     if len(both) < 2:
         return 0.0
@@ -78,7 +85,7 @@ def _unlike(where: Where, known: Where) -> float:
 
 
 def _names(real: TopologicalMap, plan: Plan) -> dict[str, Place]:
-    """The places of a world by what only one of them is called, or has as its landmark."""
+    """The places of a world, by names and landmarks that only one of them has."""
     called: list[tuple[str, Place]] = []
     for place in real.stars:
         terms = {*plan.landmarks.get(place, ())}
@@ -101,7 +108,7 @@ def _term(name: str) -> set[str]:
 
 
 def _by_name(world: TopologicalMap, names: Mapping[str, Place]) -> dict[Place, Place]:
-    """The place of the world of each place of the map, as far as landmarks tell it."""
+    """The place of the world for each place of the map, as far as landmarks tell it."""
     times = Counter(sign for signs in world.landmarks.values() for sign in signs)
     found: dict[Place, Place] = {}
     for place, signs in world.landmarks.items():
@@ -118,8 +125,10 @@ Same = Callable[[TopologicalMap, Gateway, TopologicalMap, Gateway], list[tuple[i
 def _same_slots(
     world: TopologicalMap, mine: Gateway, real: TopologicalMap, theirs: Gateway
 ) -> list[tuple[int, int]] | None:
-    """The gateways of a place, each with that of the other place that is in the same slot, when one
-    is laid on the other; None if they differ."""
+    """The gateways of a place, each with the gateway of the other place in the same slot.
+
+    One of the places is laid on the other; it is None if they differ.
+    """
     turn = theirs[1] - mine[1]
     pairs = [(slot, (slot + turn) % real.slots) for slot in sorted(world.stars[mine[0]])]
     return pairs if {slot for _, slot in pairs} == real.stars[theirs[0]] else None
@@ -128,7 +137,7 @@ def _same_slots(
 def _same_order(
     world: TopologicalMap, mine: Gateway, real: TopologicalMap, theirs: Gateway
 ) -> list[tuple[int, int]] | None:
-    """The same where slots may differ, but not the order of the gateways."""
+    """The same if slots may differ, but not the order of the gateways."""
     star, other = sorted(world.stars[mine[0]]), sorted(real.stars[theirs[0]])
     if len(star) != len(other):
         return None
@@ -139,7 +148,7 @@ def _same_order(
 def _laid(
     world: TopologicalMap, real: TopologicalMap, same: Same, named: Mapping[Place, Place]
 ) -> Iterator[dict[Place, Place]]:
-    """The ways to lay a map of one component onto a world, of which some are looked for."""
+    """The ways to lay a map of one component on a world; only some are looked for."""
     if len(world.components()) > 1:
         return
     first = next(iter(named), None)
@@ -162,8 +171,12 @@ def _laid(
 def _match(
     world: TopologicalMap, mine: Gateway, real: TopologicalMap, theirs: Gateway, same: Same
 ) -> tuple[dict[Place, Place] | None, int]:
-    """The places of the world onto which those of the map come, if one gateway is laid on another;
-    None if that fails; and how many gateways were looked at."""
+    """Lay a map on a world, with one gateway on another.
+
+    Returns:
+        The places of the world for those of the map, None if that fails; and how many gateways were
+        examined.
+    """
     image: dict[Gateway, Gateway] = {}
     places: dict[Place, Place] = {}
     taken: set[Place] = set()
@@ -191,8 +204,10 @@ def _match(
 
 
 def _between(world: TopologicalMap, at: Where) -> Where:
-    """Where all places are, if some are known: each of the others amid those that it is linked
-    to."""
+    """Find points for all places if some are known.
+
+    Each of the others is put in the middle of those to which it is linked.
+    """
     middle = np.mean([*at.values()], axis=0)
     found = {place: np.array(at.get(place, middle), float) for place in world.stars}
     ends: dict[Place, list[Place]] = {place: [] for place in world.stars if place not in at}

@@ -1,6 +1,8 @@
-"""The mesh of a drawing with bent lines, of a map of genus 0: triangles between the places, the
-bends of links, and in each face a ring of corners round a centre. It starts on a grid, where no
-triangle is folded."""
+"""The mesh of a drawing with bent lines, of a map of genus 0.
+
+It consists of triangles between the places, the bends of links, and in each face a ring of corners
+round a centre. It starts on a grid, where no triangle is folded.
+"""
 
 from collections.abc import Mapping, Sequence
 
@@ -15,28 +17,31 @@ from topomap.runtime.watch import Late, never
 
 Points = NDArray[np.float64]
 Numbers = NDArray[np.int64]
-BENDS = 5  # inner points of a link that is not straight
-ROUNDS = 30  # in which crossings are put amid their neighbours
-PASSING = 3  # of a piece of one that goes to a crossing
+BENDS = 5  # the number of inner points of a link that is not straight
+ROUNDS = 30  # rounds in which crossings are put in the middle of their neighbours
+PASSING = 3  # the number of inner points of a piece of a link up to a crossing
 
 
 class TooLong(Exception):
-    """A better drawing would take too long; the plain one is taken."""
+    """A better drawing would take too long, so the plain one is taken."""
 
 
 def faces_of(world: TopologicalMap) -> tuple[list[list[Gateway]], int]:
-    """The faces, and which is the outer one: that whose walk turns left most, at places as
-    even as a compass; among equals the longest."""
+    """The faces, and which is the outer one.
+
+    The outer face is the one whose walk turns left most, if the gateways of each place are spaced
+    evenly; of equal ones it is the longest.
+    """
     faces, half = world.faces(), world.slots // 2
 
     def turning(face: list[Gateway]) -> int:
-        """To the right, in slots."""
+        """How far the walk turns to the right, in slots."""
         total = 0
         for place, slot in face:
             end, arrival = world.links[place, slot]
             _, leaving = world.next((place, slot))
             total += half - (arrival - leaving - 1) % world.slots - 1
-            if end == place:  # a loop turns by itself, round the lesser angle
+            if end == place:  # a loop turns by itself, round the smaller angle
                 between = (arrival - slot) % world.slots
                 right = between < half or (between == half and slot < arrival)
                 total += half + between if right else between - world.slots - half
@@ -46,18 +51,21 @@ def faces_of(world: TopologicalMap) -> tuple[list[list[Gateway]], int]:
 
 
 def cross(u: Points, v: Points) -> Points:
+    """The cross product of two vectors."""
     return np.asarray(u[..., 0] * v[..., 1] - u[..., 1] * v[..., 0])
 
 
 def outer_of(outlines: Sequence[Points]) -> int:
-    """Of the outlines of faces, each walked with its face on the right, that of the outer face:
-    the one that goes round the others the other way."""
+    """Find the outer face by the outlines of faces, each walked with its face on the right.
+
+    It is the one that is walked in the other direction than the others.
+    """
     areas = [cross(line, np.roll(line, -1, axis=0)).sum() for line in outlines]
     return max(range(len(outlines)), key=lambda n: round(float(areas[n]), 9))
 
 
 def _with_crossings(world: TopologicalMap, known: Mapping[Place, Points]) -> dict[Place, Points]:
-    """Where places should be, and crossings: each amid what it is linked to."""
+    """Where places should be, and crossings, each in the middle of its neighbours."""
     found = {place: known.get(place, np.zeros(2)) for place in world.stars}
     for _ in range(ROUNDS if len(known) < len(found) else 0):
         for place in found:
@@ -68,10 +76,12 @@ def _with_crossings(world: TopologicalMap, known: Mapping[Place, Points]) -> dic
 
 
 class Mesh:
-    """Points by number: places, ends and bends of lines, then those that are not drawn; and the
-    triangles between them, counter-clockwise. ``rim`` are the points of the outline, fixed on a
-    circle. A ``fine`` mesh has so many times as many bends.
-    ``known`` is where places should be, if that is known."""
+    """The points of a drawing, by number, and the triangles between them, counter-clockwise.
+
+    The points are places, ends and bends of lines, and then those that are not drawn. ``rim`` has
+    the points of the outline, which are fixed on a circle. A ``fine`` mesh has so many times as
+    many bends. ``known`` tells where places should be, if that is known.
+    """
 
     def __init__(
         self,
@@ -119,7 +129,7 @@ class Mesh:
         return self.size - 1
 
     def _walk(self, face: list[Gateway]) -> list[int]:
-        """The points round a face, with the stubs in it; the face on the right."""
+        """The points around a face, with the stubs in it; the face is on the right."""
         world = self.world
         found: list[int] = []
         if not face:
@@ -136,10 +146,15 @@ class Mesh:
         return found
 
     def start(self, late: Late = never) -> Points:
-        """A drawing in which no triangle is folded, with the rim on a circle: each other point is
-        the mean of its neighbours by the weights (Floater, Mean value coordinates, 2003) that
-        it has in a drawing on a grid, where nothing is too small for the numbers to hold. Raises
-        TooLong when it is late."""
+        """Make a drawing in which no triangle is folded, with the rim on a circle.
+
+        Each other point is the mean of its neighbours, with the weights (Floater, Mean value
+        coordinates, 2003) that it has in a drawing on a grid, in which nothing is too small for
+        floating-point numbers.
+
+        Raises:
+            TooLong: It is late.
+        """
         points = self._on_a_grid(late)
         if late():
             raise TooLong
@@ -165,7 +180,7 @@ class Mesh:
         return self._turned(points)
 
     def _turned(self, points: Points) -> Points:
-        """The points, turned so that places are nearer to where they should be."""
+        """Turn the points so that places are nearer to where they should be."""
         if not self.known:
             return points
         drawn = np.array([points[self.place[place]] for place in self.known])
@@ -176,7 +191,7 @@ class Mesh:
         return np.asarray(points @ np.array([[x, y], [-y, x]]))
 
     def _on_a_grid(self, late: Late) -> Points:
-        """A drawing of the mesh with whole numbers as coordinates (Chrobak and Payne 1995)."""
+        """Draw the mesh with whole numbers as coordinates (Chrobak and Payne 1995)."""
         follows: dict[int, dict[int, int]] = {point: {} for point in range(self.size)}
         for corners in self.triangles.tolist():
             for n in range(3):

@@ -1,4 +1,4 @@
-"""One map, drawn by matplotlib into axes: its places, lines, faces, landmarks and steps."""
+"""One map, drawn into axes by matplotlib: its places, lines, faces, landmarks and steps."""
 
 from collections.abc import Sequence
 from functools import cache
@@ -23,12 +23,12 @@ from topomap.model.topology import Gateway, Place, TopologicalMap, gid, label
 INK, LINK, CROSSING, PENDING = "#1b1b1b", "#3d4a57", "#c2332d", "#2f7fc1"
 AGENT, SIGN, SIGNED, STEP = "#e07b00", "#2e7d4f", "#e7f5ea", "#5c6670"
 FACES = ("#dfeaf3", "#f6ead9", "#e3f0e0", "#efe3ef", "#f3f0d8", "#dff0ee")
-BESIDE = 0.15  # a text on the right of a line; what is farther from it is not near
+BESIDE = 0.15  # the distance of a text from its line; what is farther away is not near
 DASHES: Any = (0, (4, 2))
-UNIT = 0.8  # inches that a link of length 1 takes
-MARGIN = 0.35  # round all lines
-TITLE = 9  # points
-LETTERS = 5  # of a line of the name of a place, if that is longer but not too long
+UNIT = 0.8  # inches of a link of length 1
+MARGIN = 0.35  # the margin around all lines
+TITLE = 9  # the size of titles in points
+LETTERS = 5  # letters in a line of the name of a place, if it is longer but not too long
 
 Box = tuple[float, float, float, float]  # left, bottom, right, top
 
@@ -36,8 +36,11 @@ Box = tuple[float, float, float, float]  # left, bottom, right, top
 def draw(
     axes: Axes, scene: Scene, faces: bool = True, route: bool = True, laid: Layout | None = None
 ) -> Layout:
-    """Draw a map into axes, as it is ``laid`` out; returns where everything is. Of a map with links
-    that cross others the faces are not drawn: those of the planar part are not the map's."""
+    """Draw a map into axes, as it is ``laid`` out, and return the layout.
+
+    Of a map with links that cross others the faces are not drawn, because those of the planar part
+    are not the map's.
+    """
     world = scene.world
     at = scene.at
     laid = laid or layout(world, scene.ahead, where=scene.where())
@@ -68,7 +71,7 @@ def draw(
     low = np.min([*(points - MARGIN), *(corners - 0.06)], axis=0)
     high = np.max([*(points + MARGIN), *(corners + 0.06)], axis=0)
     if faces and not laid.crossing:
-        # Room for the number of the outer face, below all else.
+        # Room for the number of the outer face, at the bottom.
         low[1] = min([points[:, 1].min() - MARGIN - 0.12, *(corners[:, 1] - 0.26)])
         _draw_faces(axes, laid, [*texts, *taken], low + 0.06)
     if at:
@@ -82,7 +85,7 @@ def draw(
 
 
 def title(scene: Scene, laid: Layout) -> str:
-    """What the map is, and how many links cross others; or that it is drawn plainly."""
+    """Say what the map is, and how many links cross others; or that it is drawn plainly."""
     count = len(laid.crossing)
     others = "1 link crosses others" if count == 1 else f"{count} links cross others"
     told = [scene.title, *[others] * bool(count), *[laid.note] * bool(laid.note)]
@@ -92,7 +95,7 @@ def title(scene: Scene, laid: Layout) -> str:
 
 @cache
 def _advance(letter: str) -> float:
-    """The width of a letter in the font, in ems; what it lacks may be shown by another one."""
+    """The width of a letter in the font, in ems; another font may show what this one lacks."""
     font = get_font(findfont("DejaVu Sans"))
     if not font.get_char_index(ord(letter)):
         return 1.2
@@ -101,12 +104,12 @@ def _advance(letter: str) -> float:
 
 
 def extent(text: str, points: float) -> float:
-    """The width of a text in inches, at most: letters are fitted to dots, and may get wider."""
+    """An upper bound on the width of a text in inches; fitting letters to pixels widens them."""
     return 1.05 * sum(map(_advance, text)) * points / 72
 
 
 def _draw_faces(axes: Axes, laid: Layout, taken: Sequence[Box], corner: Points) -> None:
-    """The faces and their numbers: far from what is there, that of the outer one in a corner."""
+    """Draw the faces and their numbers away from other things; the outer one's in a corner."""
     style: Any = {"color": "#767676", "fontsize": 9, "style": "italic"}
     for number, face in enumerate(laid.faces):
         if number == laid.outer:
@@ -124,8 +127,10 @@ def _draw_faces(axes: Axes, laid: Layout, taken: Sequence[Box], corner: Points) 
 
 
 def inside(outline: Points, taken: Sequence[Box] = (), grid: int = 24) -> Points:
-    """A point well inside a polygon: of a grid of points the one farthest from its line, and
-    from what is taken."""
+    """A point well inside a polygon.
+
+    It is the point of a grid that is farthest from the outline and from what is taken.
+    """
     low, high = outline.min(0), outline.max(0)
     xs, ys = (np.linspace(low[axis], high[axis], grid + 2)[1:-1] for axis in (0, 1))
     points = np.array([(x, y) for y in ys for x in xs])
@@ -163,7 +168,7 @@ def _draw_line(
 def _draw_place(
     axes: Axes, world: TopologicalMap, laid: Layout, place: Place, point: Points
 ) -> None:
-    """A circle with a tick for each gateway, and a dot at gateway 0."""
+    """Draw a circle with a tick for each gateway, and a dot at gateway 0."""
     face = SIGNED if world.landmarks.get(place) else "white"
     name = label(place)
     axes.add_patch(
@@ -197,8 +202,13 @@ def _out(line: Points) -> Points:
 def _draw_signs(
     axes: Axes, world: TopologicalMap, laid: Layout, place: Place, taken: Sequence[Box]
 ) -> Box:
-    """The landmarks of a place, in the widest gap between the lines that leave it; if the text
-    covers something there, in that where it covers least. Returns where it is."""
+    """Draw the landmarks of a place, in the widest gap between the lines that leave it.
+
+    If the text covers something there, it goes into the gap where it covers least.
+
+    Returns:
+        Where the text is.
+    """
     lines = words.sign_lines(world.landmarks[place])
     text = "\n".join(lines)
     wide = max(extent(line, 7) for line in lines) / UNIT + 0.04
@@ -221,7 +231,7 @@ def _draw_signs(
 
 
 def _shared(one: Box, other: Box) -> float:
-    """How much two boxes have in common."""
+    """The area that two boxes have in common."""
     wide, high = (min(one[n + 2], other[n + 2]) - max(one[n], other[n]) for n in (0, 1))
     return max(0.0, wide) * max(0.0, high)
 
@@ -236,11 +246,16 @@ def _even(line: Points, parts: int = 24) -> Points:
 def _draw_steps(
     axes: Axes, laid: Layout, gateway: Gateway, steps: list[int], others: Points
 ) -> Box:
-    """The numbers of the steps that leave by a gateway, on the right of the way; not near other
-    lines, of which there are points (all those that may be near). Returns where they are."""
+    """Draw the numbers of the steps that leave by a gateway, on the right of the way.
+
+    They are kept away from other lines, of which points are given (all those that may be near).
+
+    Returns:
+        Where the numbers are.
+    """
     line = _even(laid.lines[gateway])
     spots: list[tuple[float, int, Points, Points, Points]] = []
-    for k in (12, 7, 17):  # the middle, but where another line is near
+    for k in (12, 7, 17):  # the middle, unless another line is near
         ahead = (line[k + 2] - line[k - 2]) / np.linalg.norm(line[k + 2] - line[k - 2])
         right = np.array([ahead[1], -ahead[0]])
         away = np.linalg.norm(others - line[k] - 0.13 * right, axis=1).min(initial=1)
@@ -274,13 +289,13 @@ def _draw_steps(
 
 
 def _upright(ahead: Points) -> float:
-    """The angle, in degrees, of a text along a line, not upside down."""
+    """The angle, in degrees, of a text along a line that is not upside down."""
     turn = float(np.degrees(np.arctan2(ahead[1], ahead[0]))) % 360
     return turn - 180 if 90 < turn <= 270 else turn
 
 
 def _draw_agent(axes: Axes, laid: Layout, dstate: Gateway) -> None:
-    """The agent at the gateway where it stands."""
+    """Draw the agent at its gateway."""
     line = laid.lines[dstate]
     out = line[1] - line[0]
     out = out / np.linalg.norm(out)

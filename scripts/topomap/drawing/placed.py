@@ -1,4 +1,4 @@
-"""Drawings of maps whose places are known to be somewhere: about, or exactly."""
+"""Drawings of maps whose places are known to be somewhere, exactly or approximately."""
 
 from collections.abc import Iterator, Mapping
 
@@ -12,15 +12,17 @@ from topomap.drawing.springs import STUB
 from topomap.model.topology import Gateway, Place, TopologicalMap
 
 Targets = Mapping[Place, Points]
-LEAST = 0.5  # between two places
-LARGER = 1.0, 1.6, 2.5  # times as large as with links of length 1, so as to part lines and places
+LEAST = 0.5  # the least distance between two places
+LARGER = 1.0, 1.6, 2.5  # scales that are tried, to separate lines and places
 SHARP = 0.16  # the least angle between two lines of a place, in radians
-ALIKE = 0.2  # the greatest difference of a shape, as a share of its size, that is not seen
+ALIKE = 0.2  # a difference of a shape that is not visible, as a share of its size
 
 
 def targets(world: TopologicalMap, where: Where | None) -> dict[Place, Points] | None:
-    """Where the places of a map of one component are, about the middle, links about 1 long; None if
-    that is not known of all, or all are at one point."""
+    """Where the places of a map of one component are, about the middle, with links about 1 long.
+
+    It is None if that is not known of all places, or if all are at one point.
+    """
     if not where or not all(place in where for place in world.stars):
         return None
     points = np.array([where[place] for place in world.stars], float)
@@ -38,9 +40,11 @@ def targets(world: TopologicalMap, where: Where | None) -> dict[Place, Points] |
 
 
 def at_their_places(world: TopologicalMap, known: Targets) -> Iterator[dict[Gateway, Points]]:
-    """Straight lines between the places where they are, or about there if some are too close, in
-    several sizes; of each place they have its gateways in their order. Whether lines meet is not
-    looked at."""
+    """Draw straight lines between the places where they are, in several sizes.
+
+    If some places are too close, they are moved a little. The gateways of each place keep their
+    order. It is not checked whether lines meet.
+    """
     ends = [frozenset((out[0], end[0])) for out, end in world.edges()]
     if len(set(ends)) < len(ends) or any(len(pair) == 1 for pair in ends):
         return
@@ -55,8 +59,10 @@ def at_their_places(world: TopologicalMap, known: Targets) -> Iterator[dict[Gate
 
 
 def _straight(world: TopologicalMap, points: Points) -> dict[Gateway, Points] | None:
-    """Straight lines between places at points; None if they do not leave a place in their order,
-    or too close to each other."""
+    """Draw straight lines between places at points.
+
+    It is None if they do not leave a place in their order, or are too close to each other.
+    """
     at = dict(zip(world.stars, points, strict=True))
     lines: dict[Gateway, Points] = {}
     turn = 2 * np.pi / world.slots
@@ -70,7 +76,7 @@ def _straight(world: TopologicalMap, points: Points) -> dict[Gateway, Points] | 
         if not angles:
             return None
         linked = list(angles)
-        # Pending gateways are between those that have links, as far as their slots are.
+        # Pending gateways are between those that have links, in proportion to their slots.
         for n, slot in enumerate(linked):
             following = linked[(n + 1) % len(linked)]
             slots_on = (following - slot - 1) % world.slots + 1
@@ -98,7 +104,7 @@ def _straight(world: TopologicalMap, points: Points) -> dict[Gateway, Points] | 
 
 
 def turned(lines: Mapping[Gateway, Points], known: Targets) -> dict[Gateway, Points]:
-    """A drawing, turned so that its places are where they should be as nearly as can be."""
+    """Turn a drawing so that its places come as near as possible to where they should be."""
     one, other = _pair(lines, known)
     fit = complex((one.conj() * other).sum())
     if abs(fit) < 1e-9:
@@ -109,8 +115,10 @@ def turned(lines: Mapping[Gateway, Points], known: Targets) -> dict[Gateway, Poi
 
 
 def difference(lines: Mapping[Gateway, Points], known: Targets) -> float:
-    """How much a drawing differs from where its places should be, as a share of its size, when it
-    is moved, turned and made larger or smaller so as to fit best."""
+    """How much a drawing differs from where its places should be, as a share of its size.
+
+    Before that it is moved, turned and scaled so as to fit best.
+    """
     one, other = _pair(lines, known)
     sizes = float((abs(one) ** 2).sum() * (abs(other) ** 2).sum())
     fit = abs(complex((one.conj() * other).sum()))
@@ -118,7 +126,7 @@ def difference(lines: Mapping[Gateway, Points], known: Targets) -> float:
 
 
 def _pair(lines: Mapping[Gateway, Points], known: Targets) -> tuple[Points, Points]:
-    """Where places are and should be, about their middles, as complex numbers."""
+    """Where places are and should be, from their centres, as complex numbers."""
     drawn = {place: line[0] for (place, _), line in lines.items()}
     both = np.array([[*drawn[place], *known[place]] for place in drawn])
     both = both - both.mean(0)

@@ -1,6 +1,9 @@
-"""Plain drawings, which take little time: places about as far from each other as they are in the
-map, and lines straight from one to the other. Lines leave each place in their order, but may cross
-where they need not; they are led round the places that they would pass under."""
+"""Plain drawings, which take little time.
+
+Places are about as far from each other as they are in the map, and lines are straight from one to
+the other. Lines leave each place in their order, but may cross where they need not. They are led
+round the places under which they would pass.
+"""
 
 from collections.abc import Mapping
 
@@ -13,14 +16,15 @@ from topomap.drawing.clearance import CLEAR, passing
 from topomap.drawing.mesh import Points
 from topomap.model.topology import Gateway, Place, TopologicalMap
 
-ROUNDS = 60  # in which places are moved to where their distances are nearer to what they should be
-WORK = 2_000_000  # distances that are looked at in all rounds
-MOST_PLACES = 1500  # that are moved so; more stay on a circle
-NEAREST = 0.6  # that places may be
-PUSHES = 200  # times at most that places are pushed apart
+ROUNDS = 60  # the largest number of rounds of stress majorization
+WORK = 2_000_000  # the largest number of distances in all rounds
+MOST_PLACES = 1500  # more places than these stay on a circle
+NEAREST = 0.6  # the least distance between places
+PUSHES = 200  # the largest number of times that places are pushed apart
 STEM = 0.3  # the length of a line's first piece
-MOST_TURN = np.pi / 2.4  # between a line's first piece and where it goes; else it goes round
-DETOURS, AROUND = 30, 1.2  # at most, of a line; how far from a place, in least distances
+MOST_TURN = np.pi / 2.4  # the largest angle between a line's first piece and its goal
+# The largest number for a line; the distance from a place, in least distances.
+DETOURS, AROUND = 30, 1.2
 NOTE = "drawn plainly, as a better drawing takes too long"
 UNDER = "links pass under places"
 
@@ -28,8 +32,10 @@ UNDER = "links pass under places"
 def plain(
     world: TopologicalMap, stub: float, known: Mapping[Place, Points] | None = None
 ) -> dict[Gateway, Points]:
-    """The lines of a map of one component; of a place without gateways there are none. Places are
-    about where they are ``known`` to be, if they are."""
+    """Draw the lines of a map of one component; a place without gateways has none.
+
+    Places are about where they are ``known`` to be, if they are.
+    """
     number = {place: n for n, place in enumerate(world.stars)}
     pairs = [(number[p], number[q]) for (p, _), (q, _) in world.edges() if p != q]
     points = (
@@ -48,7 +54,7 @@ def plain(
         elif gateway not in lines:
             there = points[number[other[0]]]
             back = norths[number[other[0]]] - turn * other[1]
-            if other[0] == place:  # a loop: out, round between its gateways, and in
+            if other[0] == place:  # a loop goes out, round between its gateways, and in
                 back = angle - turn * ((other[1] - slot) % world.slots)
                 middle = here + 2 * STEM * _way((angle + back) / 2)
                 line = [here, here + STEM * _way(angle), middle, here + STEM * _way(back), here]
@@ -63,8 +69,10 @@ def plain(
 def _led_round(
     world: TopologicalMap, places: Mapping[Place, Points], lines: dict[Gateway, Points]
 ) -> dict[Gateway, Points]:
-    """The lines, led round the places that they would pass under; their first and last pieces stay
-    as they are, so each still leaves by its gateway."""
+    """Lead the lines round the places under which they would pass.
+
+    Their first and last pieces stay as they are, so each still leaves by its gateway.
+    """
     once = [out for out, _ in world.edges()]
     ends = [{out[0], world.links[out][0]} for out in once]
     for _ in range(DETOURS):
@@ -93,7 +101,7 @@ def _way(angle: float) -> Points:
 
 
 def _stem(here: Points, angle: float, there: Points) -> list[Points]:
-    """How a line leaves a place at an angle, and comes round it to where it goes on straight."""
+    """How a line leaves a place at an angle, and comes round it before it goes on straight."""
     x, y = there - here
     off = (np.arctan2(y, x) - angle + np.pi) % (2 * np.pi) - np.pi
     found = [here + STEM * _way(angle)]
@@ -105,7 +113,7 @@ def _stem(here: Points, angle: float, there: Points) -> list[Points]:
 
 
 def _norths(points: Points, ends: list[tuple[int, int, int]], slots: int) -> Points:
-    """The direction of each place's slot 0 by which its lines leave about as they go on."""
+    """The direction of each place's slot 0 by which its lines leave roughly as they go on."""
     if not ends:
         return np.zeros(len(points))
     place, other, slot = np.array(ends).T
@@ -116,8 +124,11 @@ def _norths(points: Points, ends: list[tuple[int, int, int]], slots: int) -> Poi
 
 
 def _points(many: int, pairs: list[tuple[int, int]]) -> Points:
-    """Points whose distances are about the numbers of links between them, by stress majorization
-    (Gansner, Koren and North 2004); or points on a circle. None are too close to each other."""
+    """Points whose distances are about the numbers of links between them.
+
+    They are found by stress majorization (Gansner, Koren and North 2004), or are points on a
+    circle. None are too close to each other.
+    """
     circle = _circle(many)
     if many < 3 or many > MOST_PLACES:
         return circle
@@ -139,7 +150,7 @@ def _points(many: int, pairs: list[tuple[int, int]]) -> Points:
 
 
 def pushed_apart(points: Points) -> Points:
-    """Points where they are, but for those that are too close to each other."""
+    """Points where they are, except those that are too close to each other."""
     return _pushed(points, _circle(len(points)))
 
 
@@ -149,7 +160,7 @@ def _circle(many: int) -> Points:
 
 
 def _scaled(far: Points, many: int) -> Points:
-    """Points from their distances, by classical scaling."""
+    """Points from their distances, by classical multidimensional scaling."""
     squares = far**2
     np.fill_diagonal(squares, 0)
     squares -= squares.mean(0)
@@ -160,8 +171,9 @@ def _scaled(far: Points, many: int) -> Points:
 
 
 def _pushed(points: Points, circle: Points) -> Points:
-    """The points, pushed apart where they are too close; those on a circle if that is in vain."""
-    points = points + 1e-3 * circle / max(1.0, float(abs(circle).max()))  # none is on another one
+    """Push the points apart where they are too close; if that fails, take those on a circle."""
+    # So that no two points are equal.
+    points = points + 1e-3 * circle / max(1.0, float(abs(circle).max()))
     for _ in range(PUSHES):
         one, other = KDTree(points).query_pairs(NEAREST, output_type="ndarray").T
         if not len(one):

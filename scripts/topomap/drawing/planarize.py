@@ -8,17 +8,22 @@ from topomap.model.topology import Gateway, Place, TopologicalMap
 from topomap.runtime import nx
 from topomap.runtime.watch import Late, never
 
-LINK_ORDERS = 30  # of links, for a planar part
-WORK = 400_000  # gateways looked at for a planar part, before no further order is tried
+LINK_ORDERS = 30  # the number of orders of links that are tried for a planar part
+WORK = 400_000  # gateways examined for a planar part, after which no further order is tried
 Link = tuple[Gateway, Gateway]
 
 
 def planar_part(world: TopologicalMap, work: int = WORK, late: Late = never) -> TopologicalMap:
-    """The map with links enough to be connected, and all further ones that leave it planar.
-    Which these are depends on the order of the links; of some orders the one by which the
-    rest cross the fewest links counts. Of a large map fewer orders are tried: none after the
-    first one once so much ``work`` is done, or when it is ``late``. Raises TooLong if it is late
-    before the first order is done."""
+    """Find a planar part of the map that is connected, with as many links as fit.
+
+    It has links enough to be connected, and all further ones that leave it planar. Which these are
+    depends on the order of the links. Of several orders, the one is taken by which the other links
+    cross the fewest links. For a large map fewer orders are tried: none after the first one once so
+    much ``work`` is done, or when it is ``late``.
+
+    Raises:
+        TooLong: It is late before the first order is done.
+    """
     if not world.genus():
         return world
     edges = world.edges()
@@ -45,16 +50,24 @@ def planar_part(world: TopologicalMap, work: int = WORK, late: Late = never) -> 
 
 
 def left_out(part: TopologicalMap, world: TopologicalMap) -> list[Link]:
-    """The links of a map that a part of it lacks."""
+    """The links of a map that a part of it does not have."""
     return [(out, end) for out, end in world.edges() if out not in part.links]
 
 
 def routed(
     part: TopologicalMap, further: Sequence[Link], late: Late = never
 ) -> tuple[TopologicalMap, list[Place]]:
-    """A map of genus 0 that has the further links as well, and of it the places that are not
-    the map's: each is where a further link crosses a link, and straight through it go both.
-    A link is led through as few faces as can be, one after the other. Raises TooLong."""
+    """Lead further links through the faces of a planar part, one after the other.
+
+    Each is led through as few faces as possible.
+
+    Returns:
+        A map of genus 0 that has the further links as well, and its places that are not the map's:
+        each is a crossing of a further link and a link, through which both go straight.
+
+    Raises:
+        TooLong: It is late.
+    """
     walks = Walks(part, part.edges())
     walks.route(further, late)
     return walks.map(), walks.crossings
@@ -63,10 +76,10 @@ def routed(
 class Walks:
     """The walks round the faces of a map that grows link by link.
 
-    Gateways go by numbers. A walk passes every gateway: by one that has a link it leaves, and
-    where it comes to a place it goes on with the next gateway counter-clockwise; so it does at a
-    pending gateway. Walks go by numbers too; where a link parts one, the shorter half gets a new
-    one. ``work`` counts the gateways that were looked at.
+    Gateways are numbers. A walk passes every gateway. By one that has a link it leaves; when it
+    comes to a place, or to a pending gateway, it goes on with the next gateway counter-clockwise.
+    Walks are numbers, too; if a link splits one, the shorter half gets a new number. ``work``
+    counts the gateways that were examined.
     """
 
     def __init__(self, world: TopologicalMap, links: Iterable[Link]) -> None:
@@ -105,17 +118,17 @@ class Walks:
         return self.before[gateway if twin < 0 else twin]
 
     def _walk(self, start: int) -> list[int]:
-        """The gateways of a walk, from one of them on."""
+        """The gateways of a walk, beginning with one of them."""
         walk = [start]
         while (following := self._next(walk[-1])) != start:
             walk.append(following)
         return walk
 
     def _link(self, a: int, b: int) -> None:
-        """Join two pending gateways that are on one walk, which is parted."""
+        """Join two pending gateways that are on one walk, which is split."""
         self.twin[a], self.twin[b] = b, a
         one, other = [a], [b]
-        while True:  # round both halves at once, until the shorter one is done
+        while True:  # go round both halves at once, until the shorter one is complete
             for walk in one, other:
                 following = self._next(walk[-1])
                 if following == walk[0]:
@@ -124,8 +137,11 @@ class Walks:
                 walk.append(following)
 
     def planar(self, edges: Sequence[Link]) -> list[Link]:
-        """Of links in their order take those that connect the places, then the further ones that
-        leave the map planar: those between two gateways of one walk."""
+        """Add links in their order as long as the map stays planar.
+
+        First come those that connect the places, and then the further ones that join two gateways
+        of one walk.
+        """
         joined = nx.utils.UnionFind(self.world.stars)
         tree: list[Link] = []
         others: list[Link] = []
@@ -146,8 +162,11 @@ class Walks:
         return kept
 
     def route(self, further: Iterable[Link], late: Late = never) -> None:
-        """Lead further links through the faces, across as few links as can be. Raises TooLong when
-        it is late."""
+        """Lead further links through the faces, across as few links as possible.
+
+        Raises:
+            TooLong: It is late.
+        """
         slots = self.world.slots
         half = slots // 2
         right, left = max(1, half // 2), half + max(1, half // 2)
@@ -169,12 +188,15 @@ class Walks:
             self._link(at, to)
 
     def _crossed(self, out: int, end: int) -> list[int]:
-        """The links that a line between two pending gateways crosses, from their right to their
-        left: as few as can be."""
+        """The links that a line between two pending gateways crosses, from right to left.
+
+        They are as few as possible.
+        """
         target = self.face[end]
         start = self.face[out]
-        came: dict[int, tuple[int, int]] = {start: (-1, start)}  # by which gateway, from where
-        inside = [(start, out)]  # walks to look round, and a gateway of each
+        # For each walk, the gateway and the walk before.
+        came: dict[int, tuple[int, int]] = {start: (-1, start)}
+        inside = [(start, out)]  # walks to examine, and a gateway of each
         for number, gateway in inside:
             if target in came:
                 break
@@ -194,7 +216,7 @@ class Walks:
         return crossed[::-1]
 
     def map(self) -> TopologicalMap:
-        """The map with all its links, and the crossings as places."""
+        """The map with all its links, and with the crossings as places."""
         stars = dict(self.world.stars)
         for n, place in enumerate(self.crossings):
             first = len(self.names) - 4 * (len(self.crossings) - n)

@@ -16,20 +16,20 @@ from topomap.model.words import markers, plural, short
 from topomap.runtime.errors import InputError, printable
 from topomap.runtime.limits import LARGEST
 
-MOST_DRAWN = 1000  # in a picture
-Where = Mapping[Place, tuple[float, float]]  # to the right and up, in any unit
+MOST_DRAWN = 1000  # the largest number of places in a picture
+Where = Mapping[Place, tuple[float, float]]  # positions to the right and up, in any unit
 
 
 @dataclass(frozen=True)
 class Scene:
     """A map, and the dstate after each step of the route in it, from step 0 (or none).
 
-    ``name`` says where it is from. It is map ``number`` of ``many`` (0: how many is not known),
-    which are all if ``whole``. ``kind`` says what these maps are; if it is empty, that is not
-    known, and they are those that were given. ``caption`` is a title instead of these. ``marker``
-    says where the marker was put down, seen and taken up, if it was; ``rests`` are the steps that
-    are no travel. ``seen`` is the experience, if it is known; ``like`` tells where places are, if
-    that is to be as in some world.
+    ``name`` tells where it is from. It is map ``number`` of ``many`` (0: the number is not known),
+    which are all if ``whole``. ``kind`` tells what these maps are; if it is empty, that is not
+    known, and they are the given maps. ``caption`` is a title in the place of these. ``marker``
+    tells where the marker was put down, seen and taken up, if it was. ``rests`` has the steps that
+    are not a travel. ``seen`` is the experience, if it is known. ``like`` tells where places are,
+    if they are to be as in some world.
     """
 
     world: TopologicalMap
@@ -51,13 +51,13 @@ class Scene:
             return self.like
         if self.seen is None or not (self.seen.compass or self.seen.shifts):
             return {}
-        from topomap.drawing.where import measured  # it takes its time
+        from topomap.drawing.where import measured  # loading it takes time
 
         return measured(self.seen, [(place, slot) for place, slot in self.at])
 
     @property
     def title(self) -> str:
-        """What the map is, in two lines; an instance by the stem of its file."""
+        """What the map is, in two lines; an instance is named by the stem of its file."""
         world = self.world
         kind = short(printable(self.kind), 60)
         which = f"map {self.number}" + f" of {self.many}" * bool(self.many)
@@ -85,7 +85,7 @@ class Scene:
 
     @property
     def ahead(self) -> Gateway | None:
-        """The gateway that is left first, if one is: it leads to the right of a picture."""
+        """The gateway by which the agent leaves first, which leads to the right of a picture."""
         travels = (arrival for step, arrival in enumerate(self.at[1:], 1) if step not in self.rests)
         first = next(travels, None)
         return None if first is None else self.world.links[first]
@@ -106,8 +106,11 @@ def _only(kind: str) -> str:
 
 
 def of_instance(seen: Experience, name: str, document: maps.Document) -> list[Scene]:
-    """The maps of a document that tells no more of them than ``at``, as clingo does, or whatever
-    else it tells. Raises InputError, one line, if one is none of this experience."""
+    """The maps of a document about an instance, which may tell nothing but ``at``, as clingo does.
+
+    Raises:
+        InputError: One is not a map of this experience. One line.
+    """
     scenes = []
     many = len(document.best)
     for number, (place, entry) in enumerate(document.best, 1):
@@ -136,8 +139,7 @@ def of_instance(seen: Experience, name: str, document: maps.Document) -> list[Sc
 
 
 def of_found(experience: Experience, name: str, found: Sequence[Found], whole: bool) -> list[Scene]:
-    """Maps that were found in an experience from there, which are all that there are if
-    ``whole``."""
+    """The maps that were found in an experience, which are all that there are if ``whole``."""
     numbered = enumerate(found, 1)
     return [one_found(experience, name, one, n, len(found), whole) for n, one in numbered]
 
@@ -145,7 +147,7 @@ def of_found(experience: Experience, name: str, found: Sequence[Found], whole: b
 def one_found(
     experience: Experience, name: str, one: Found, number: int, many: int, whole: bool
 ) -> Scene:
-    """One of them: the ``number``-th of ``many`` (0: how many is not known)."""
+    """The ``number``-th of ``many`` maps that were found (0: the number is not known)."""
     return Scene(
         *(experience.map_of(one.at), one.at, name, number, many, one.kind),
         whole=whole,
@@ -156,7 +158,11 @@ def one_found(
 
 
 def of_document(document: maps.Document) -> list[Scene]:
-    """The maps of a document. Raises InputError if one is none."""
+    """The maps of a document.
+
+    Raises:
+        InputError: One is not a map.
+    """
     name = str(document.claims.get("instance") or document.where)
     slots = document.claims.get("slots")
     if document.by_clingo and document.maps:
@@ -186,13 +192,16 @@ def of_document(document: maps.Document) -> list[Scene]:
 
 
 def _rests(document: maps.Document) -> set[int]:
-    """The steps of a document that are no travel."""
+    """The steps of a document that are not a travel."""
     return {*document.claims.get("rests", [])}
 
 
 def world_of(slots: int, entry: dict[str, Any], where: str) -> TopologicalMap:
-    """The map that ``places`` and ``links`` describe. Raises InputError if that is no map: if
-    a gateway has two links, or does not exist."""
+    """The map that ``places`` and ``links`` describe.
+
+    Raises:
+        InputError: It is not a map: a gateway has two links, or does not exist.
+    """
     try:
         stars = {
             int(place["place"]): frozenset(int(slot) for slot in place["gateways"])

@@ -15,13 +15,14 @@ from topomap.runtime.watch import Late, never
 if TYPE_CHECKING:
     from topomap.drawing.layout import Layout
 
-UNIT = 60  # the middle one of the links
-RADIUS = 11  # of a place
-APART, NARROW = 30, 15  # places, and in degrees gateways, if they are to be told
-FEW, MANY = (25, 119), (120,)  # steps of the descent, in a small picture and a large one
+UNIT = 60  # the median length of links
+RADIUS = 11  # the radius of a place
+APART, NARROW = 30, 15  # least distances: of places, and in degrees of gateways
+FEW, MANY = (25, 119), (120,)  # steps of the descent in a small picture and in a large one
 STUB = 22
 MARGIN = 20
-LETTER, HIGH, GAP = 7.2, 13, 4  # of a landmark: a letter, a line, and what is left round it
+# Of landmarks: the width of a letter, the height of a line, and the margin.
+LETTER, HIGH, GAP = 7.2, 13, 4
 
 Point = tuple[int, int]
 Line = list[Point]
@@ -31,10 +32,13 @@ Box = tuple[int, int, int, int]  # left, top, width, height
 
 @dataclass(frozen=True)
 class Drawing:
-    """Where a map is drawn: places, of each gateway the line that leaves by it, y downwards; the
-    links that cross others; the frame, x, y, width and height; faces, each its
-    outline and a point in it, the outer one without an outline; where the landmarks of
-    places begin; and a note if the drawing is plain (see ``layout.Layout``)."""
+    """Where the parts of a map are drawn.
+
+    It has the places, and for each gateway the line that leaves by it, with y downwards; the links
+    that cross others; the frame as x, y, width and height; the faces, each with its outline and a
+    point in it, the outer one without an outline; where the landmarks of places begin; and a note
+    if the drawing is plain (see ``layout.Layout``).
+    """
 
     places: Mapping[Place, Point]
     lines: Mapping[Gateway, Line]
@@ -52,8 +56,10 @@ def drawing(
     late: Late = never,
     where: Mapping[Place, tuple[float, float]] | None = None,
 ) -> Drawing | None:
-    """A drawing of a map (see ``layout.layout``), made in as few steps as leave it legible. A
-    small one has no faces, and there is none if the gateways of a place cannot be told apart."""
+    """Draw a map (see ``layout.layout``), in as few steps as leave it legible.
+
+    A small drawing has no faces. There is none if the gateways of a place could not be told apart.
+    """
     from topomap.drawing import layout
 
     for steps in FEW if small else MANY:
@@ -71,10 +77,10 @@ def drawing(
     texts = [box_of(world, place, point) for place, point in signs.items()]
     frame = _frame(points, texts)
     faces: list[tuple[int, Line, Point]] = []
-    if not small and not laid.crossing:  # else they are not the map's
-        from topomap.drawing.panel import inside  # so does matplotlib
+    if not small and not laid.crossing:  # otherwise they are not the map's
+        from topomap.drawing.panel import inside  # loading it takes time
 
-        # As a layout has them, y upwards.
+        # As in a layout, with y upwards.
         upwards = [(x, -y - high, x + wide, -y) for x, y, wide, high in [*taken, *texts]]
         x, y, wide, high = frame
         for number, face in enumerate(laid.faces, 1):
@@ -89,7 +95,7 @@ def drawing(
 
 
 def _frame(points: Sequence[Point], texts: Sequence[Box]) -> Box:
-    """What is round points, with a margin, and texts."""
+    """The frame around points and texts, with a margin."""
     sides = (-1, 1)
     corners = [(x + a * MARGIN, y + b * MARGIN) for x, y in points for a in sides for b in sides]
     for x, y, wide, high in texts:
@@ -99,13 +105,13 @@ def _frame(points: Sequence[Point], texts: Sequence[Box]) -> Box:
 
 
 def _wide(text: str) -> int:
-    """The width of a text, about: the font is the reader's."""
+    """An estimate of the width of a text, whose font is the reader's."""
     wide = sum(1 + (unicodedata.east_asian_width(c) in "WF" or c in "MWmw") for c in text)
     return round(LETTER * wide)
 
 
 def box_of(world: TopologicalMap, place: Place, point: Point) -> Box:
-    """What the landmarks of a place cover, if they begin there."""
+    """The box of the landmarks of a place, if they begin there."""
     lines = words.sign_lines(world.landmarks[place])
     return (*point, max(map(_wide, lines)), len(lines) * HIGH)
 
@@ -113,7 +119,7 @@ def box_of(world: TopologicalMap, place: Place, point: Point) -> Box:
 def _taken(
     world: TopologicalMap, places: Mapping[Place, Point], lines: Mapping[Gateway, Line]
 ) -> list[Box]:
-    """What places and pending gateways cover."""
+    """The boxes of places and pending gateways."""
     size = 2 * RADIUS
     return [(x - RADIUS, y - RADIUS, size, size) for x, y in places.values()] + [
         (min(x, u) - 3, min(y, v) - 3, abs(u - x) + 6, abs(v - y) + 6)
@@ -128,8 +134,11 @@ def _signs(
     lines: Mapping[Gateway, Line],
     taken: Sequence[Box],
 ) -> dict[Place, Point]:
-    """Where the landmarks of the places are: in the widest gap between the lines that leave; if
-    they cover something there, in that where they cover least."""
+    """Where the landmarks of the places are.
+
+    They are in the widest gap between the lines that leave; if they cover something there, in the
+    gap where they cover least.
+    """
     covered = list(taken)
     found: dict[Place, Point] = {}
     for place, (x, y) in places.items():
@@ -157,7 +166,7 @@ def _sign(number: float) -> int:
 
 
 def _shared(one: Box, other: Box) -> int:
-    """How much two boxes have in common."""
+    """The area that two boxes have in common."""
     wide, high = (
         min(one[n] + one[n + 2], other[n] + other[n + 2]) - max(one[n], other[n]) for n in (0, 1)
     )
@@ -175,7 +184,7 @@ def way_of(line: Line) -> tuple[float, float]:
 def _scaled(
     laid: "Layout", world: TopologicalMap
 ) -> tuple[float, dict[Place, Point], dict[Gateway, Line]]:
-    """The unit, and places and lines in it. A stub may be squeezed, but it has a direction."""
+    """The unit, and places and lines in it; a short stub keeps a direction."""
     crossing = {end for link in laid.crossing for end in link}
     linked = [end for end in laid.lines if end in world.links and end not in crossing]
     lengths = sorted(sum(math.dist(p, q) for p, q in pairwise(laid.lines[end])) for end in linked)
@@ -191,8 +200,10 @@ def _scaled(
 
 
 def _narrowest(lines: Mapping[Gateway, Line], place: Place, star: Collection[int]) -> float:
-    """The least angle in degrees between neighbouring gateways of a place; 0 if they are not
-    seen to be in their order."""
+    """The least angle in degrees between neighbouring gateways of a place.
+
+    It is 0 if they are not seen to be in their order.
+    """
     angles = []
     for slot in sorted(star):
         x, y = lines[place, slot][0]
@@ -207,8 +218,11 @@ def _point(point: Any) -> Point:
 
 
 def part_of(whole: Drawing, world: TopologicalMap) -> Drawing | None:
-    """The drawing of a map that has grown to the whole one; None if it would show a crossing
-    that it need not have, or gateways cannot be told apart."""
+    """The drawing of a map that has grown into the whole one, as a part of its drawing.
+
+    It is None if it would show a crossing that it need not have, or if gateways could not be told
+    apart.
+    """
     if whole.note:
         return None
     crossing = [link for link in whole.crossing if link[0] in world.links]

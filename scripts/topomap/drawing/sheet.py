@@ -1,5 +1,7 @@
-"""Maps side by side on one sheet, with titles and a legend, in a file: the same bytes for the same
-maps."""
+"""Maps side by side on one sheet in a file, with titles and a legend.
+
+The same maps always give the same bytes.
+"""
 
 import re
 import warnings
@@ -37,7 +39,7 @@ from topomap.drawing.panel import (
 )
 from topomap.drawing.scenes import Scene
 
-LEAST, WIDEST = 4.5, 3.2  # inches of a picture, and of a title
+LEAST, WIDEST = 4.5, 3.2  # inches: the least width of a picture, and the largest of a title
 STYLE: Any = {
     "text.parse_math": False,  # a name may have a "$"
     "svg.hashsalt": "topomap",
@@ -65,8 +67,7 @@ def _wrapped(text: str, inches: float) -> list[str]:
 def legend(
     figure: Figure, scenes: Sequence[Scene], drawn: Sequence[Layout], inches: float
 ) -> Legend:
-    """What the signs mean, of those that occur where the scenes are drawn, in lines of some width
-    at the foot of a figure."""
+    """Explain the signs that occur in the scenes, in lines at the foot of a figure."""
     worlds = [scene.world for scene in scenes]
     dot = Line2D([], [], marker=Outline.circle((0, 1), 0.4), ls="", mfc=INK, mew=0, ms=11)
     place: Any = {"marker": "o", "ls": "", "mec": INK, "ms": 8}
@@ -103,7 +104,7 @@ def legend(
 
 
 def _inches(figure: Figure, made: Legend) -> tuple[float, float]:
-    """Width and height of a legend."""
+    """The width and height of a legend."""
     box = made.get_window_extent()
     return box.width / figure.dpi, box.height / figure.dpi
 
@@ -111,9 +112,11 @@ def _inches(figure: Figure, made: Legend) -> tuple[float, float]:
 def picture(
     scenes: Sequence[Scene], columns: int = 3, laid: Sequence[Layout | None] = ()
 ) -> Figure:
-    """Maps side by side, in one scale, each in the middle of as much room as the largest in its
-    row or column needs, below a title that is not wider; and a legend. They are drawn as they are
-    ``laid`` out, if that is known."""
+    """Draw maps side by side, in one scale, and a legend.
+
+    Each is in the middle of as much room as the largest one in its row or column needs, below a
+    title that is not wider. They are drawn as they are ``laid`` out, if that is known.
+    """
     with mpl.rc_context(STYLE):
         figure = Figure()
         FigureCanvasAgg(figure)
@@ -142,7 +145,7 @@ def picture(
             row, column = divmod(n, columns)
             x = sum(wide[:column]) + wide[column] / 2
             y = size[1] - sum(heads[: row + 1]) - sum(high[:row]) - high[row] / 2
-            # As high as the row, so that the titles are in line.
+            # It is as high as the row, so that the titles are aligned.
             half = np.array([spans[n, 0], high[row]]) / 2
             low, top = axes.get_ylim()
             middle = (low + top) / 2
@@ -153,13 +156,13 @@ def picture(
 
 
 def _spans(axes: Axes) -> tuple[float, float]:
-    """Width and height of what axes show."""
+    """The width and height of what axes show."""
     (x0, x1), (y0, y1) = axes.get_xlim(), axes.get_ylim()
     return x1 - x0, y1 - y0
 
 
 def write(figure: Figure, file: IO[bytes], format: str) -> None:
-    """Write a figure: svg, png or pdf, without the date."""
+    """Write a figure as svg, png or pdf, without the date."""
     about = {"svg": {"Date": None}, "pdf": {"CreationDate": None}, "png": {"Software": None}}
     with mpl.rc_context(STYLE), warnings.catch_warnings():
         warnings.filterwarnings("ignore", "Glyph .* missing from font")

@@ -1,5 +1,7 @@
-"""What a good drawing with bent lines is: the energy of springs along the lines of a mesh, of
-triangles that must not fold, and of places that keep apart."""
+"""What a good drawing with bent lines is, as an energy.
+
+It has springs along the lines of a mesh, triangles that must not fold, and places that keep apart.
+"""
 
 from collections import defaultdict
 from collections.abc import Sequence
@@ -11,32 +13,32 @@ from scipy.spatial import KDTree
 
 from topomap.drawing.mesh import Mesh, Numbers, Points, cross
 
-# Terms f(y) of an energy, where y depends on some of the numbers x: which these are, dy/dx of each
-# of them, f'(y), and f''(y) or 0 if that is negative. A column for each of the terms of a kind.
+# Terms f(y) of an energy, where y depends on some of the numbers x: the indices of these, dy/dx for
+# each of them, f'(y), and f''(y) or 0 if that is negative. Each term of a kind has a column.
 Term = tuple[Numbers, Points, Points, Points]
-STUB = 0.36  # the length of a stub, where a link is of length 1
+STUB = 0.36  # the length of a stub, if a link has length 1
 FIRST = 0.22  # the length of a link's piece at a place
-LEAVING = 0.16  # what that must be, and of a stub, to be seen outside the place's circle
-SIDES = (0, 1), (0, 2), (1, 2)  # of a triangle, by its corners
+LEAVING = 0.16  # the least length of that, or of a stub, to be visible outside the circle
+SIDES = (0, 1), (0, 2), (1, 2)  # the sides of a triangle, by its corners
 SHORT = 0.6  # the least length of a link whose ends are known
 PIECE, LOOP = 0.7, 1.6  # the lengths of a link's piece up to a crossing, and of a loop
 
 
 class Springs:
-    """How far a drawing is from a good one, in energy, and how each number of it would lessen it.
+    """The energy of a drawing, which is low if it is good, with its derivatives.
 
-    Links are springs of length 1, stiff against bending; the gateways of a place are drawn to an
-    even compass, which may turn; places keep apart. Each triangle resists the more, the flatter
-    it is, by ``weight``. The numbers are the coordinates of the points, then the norths: the
-    direction of each place's slot 0, in radians.
+    Links are springs of length 1 that are stiff against bending. The gateways of a place are pulled
+    towards an even compass, which may turn. Places keep apart. Each triangle resists more if it is
+    flatter, with ``weight``. The numbers are the coordinates of the points, and then the norths:
+    the direction of each place's slot 0, in radians.
     """
 
     STRETCH, SQUEEZE, BEND, LOOP, COMPASS = 0.5, 2.0, 27.0, 0.3, 3.0
-    # Places to each other, a crossing to either, a place to a line, and two lines.
+    # Least distances: two places, a crossing and either, a place and a line, two lines.
     NEAR = 0.9, 0.6, 0.4, 0.25
-    FIRM = 10.0  # times as firm as other pieces: where lines leave
-    ANCHOR = 2.0  # of a place, to where it should be
-    LEAST = 0.1  # of the compass's stiffness, where a gateway is far from its direction
+    FIRM = 10.0  # the first pieces of lines are so many times as stiff as others
+    ANCHOR = 2.0  # the stiffness that pulls a place to where it should be
+    LEAST = 0.1  # the least share of the compass's stiffness, for gateways far off
 
     def __init__(self, mesh: Mesh) -> None:
         world = mesh.world
@@ -48,13 +50,13 @@ class Springs:
         sides: list[tuple[float, ...]]
         sides = [(*mesh.lines[gateway][:2], STUB) for gateway in world.pending()]
         lines = [line for line in mesh.lines.values() if len(line) > 2]
-        lines.sort(key=lambda line: line[0] >= self.places)  # those that leave crossings last
+        lines.sort(key=lambda line: line[0] >= self.places)  # those that leave crossings come last
         sides += [(*line[:2], FIRST) for line in lines]
         firm = sum(side[0] < self.places for side in sides)
         crossed = {mesh.place[place] for place in mesh.crossings}
         for gateway, other in world.edges():
             line = mesh.lines[gateway]
-            weak = line[0] == line[-1]  # a loop cannot but bend
+            weak = line[0] == line[-1]  # a loop must bend
             whole = LOOP if weak else PIECE if {line[0], line[-1]} & crossed else 1.0
             if mesh.known and not weak:
                 far = float(np.hypot(*(mesh.known[gateway[0]] - mesh.known[other[0]])))
@@ -89,7 +91,7 @@ class Springs:
         return np.arctan2(y, x)
 
     def legible(self, x: Points) -> bool:
-        """Whether all lines leave their places, and no places lie on each other."""
+        """Tell whether all lines leave their places, and no places lie on each other."""
         points = x[: 2 * self.size].reshape(-1, 2)
         a, b = self.sides[:, self.firm > 1]
         leaving = np.linalg.norm(points[b] - points[a], axis=1)
@@ -97,7 +99,7 @@ class Springs:
         return bool((leaving > LEAVING).all() and not together)
 
     def reach(self, x: Points, step: Points) -> float:
-        """How much of a step goes until a triangle is folded."""
+        """The share of a step that is possible until a triangle is folded."""
         points, moves = (z[: 2 * self.size].reshape(-1, 2) for z in (x, step))
         a, b, c = self.triangles
         u, v, du, dv = (
@@ -110,15 +112,18 @@ class Springs:
         area, grow, bend = cross(u, v), cross(u, dv) + cross(du, v), cross(du, dv)
         root = np.sqrt(np.maximum(0, grow**2 - 4 * area * bend))
         real = grow**2 >= 4 * area * bend
-        below = np.where(grow < 0, root - grow, -root - grow)  # that of the two which cannot cancel
+        # The one of the two without cancellation.
+        below = np.where(grow < 0, root - grow, -root - grow)
         with np.errstate(divide="ignore", invalid="ignore"):
             roots = np.stack([2 * area / below, below / (2 * bend)])
         roots = roots[:, real]
         return float(np.min(roots[roots > 0], initial=np.inf))
 
     def _fixed_columns(self) -> list[Numbers]:
-        """Of the terms, but for the last kind of them, which numbers they depend on; in the order
-        in which a call gives them."""
+        """The numbers on which the terms depend, except the last kind of terms.
+
+        They are in the order in which a call gives the terms.
+        """
         corners, ends = _both(*self.triangles), _both(*self.sides)
         edges = np.hstack([self.triangles[[n, m]] for n, m in SIDES])
         axes = [np.hstack([2 * numbers, 2 * numbers + 1]) for numbers in (edges, self.bends)]
@@ -128,8 +133,11 @@ class Springs:
         return [corners, axes[0], ends, ends, axes[1], turning, *held]
 
     def __call__(self, x: Points) -> tuple[float, list[Term]]:
-        """The energy, infinite if a triangle is folded, and its terms; the last of these are those
-        of what is near to each other."""
+        """The energy and its terms.
+
+        The energy is infinite if a triangle is folded. The last terms are those of points that are
+        near to each other.
+        """
         weight = self.weight
         points, norths = x[: 2 * self.size].reshape(-1, 2), x[2 * self.size :]
         a, b, c = self.triangles
@@ -137,7 +145,7 @@ class Springs:
         area = cross(u, v)
         if not area.min() > 0:
             return np.inf, []
-        shapes: list[tuple[Points, Points, Any]] = []  # all of a term but the columns
+        shapes: list[tuple[Points, Points, Any]] = []  # everything of a term except the columns
         squares = (u**2 + v**2 + (v - u) ** 2).sum(1)
         total = weight * (np.log(squares) - np.log(area)).sum()
         at_b, at_c = np.stack([v[:, 1], -v[:, 0]]) / area, np.stack([-u[:, 1], u[:, 0]]) / area
@@ -174,7 +182,7 @@ class Springs:
             off_by = points[self.anchors] - self.wanted
             total += self.ANCHOR * (off_by**2).sum()
             pull = 2 * self.ANCHOR * np.concatenate([off_by.T[0], off_by.T[1]])
-            # As _both has them: all first coordinates of the places, then all second ones.
+            # In the order of _both: all first coordinates of the places, then all second ones.
             shapes.append((np.ones((1, len(pull))), pull, np.full(len(pull), 2 * self.ANCHOR)))
         terms = [
             (columns, ways, pull, np.broadcast_to(stiff, pull.shape))
@@ -191,12 +199,14 @@ class Springs:
 
 
 class Neighbours:
-    """Which points of a mesh are to keep apart, and are nearer to each other than they should be:
-    places and crossings, and points of lines and whatever else is on a walk with them, but for
-    what is on the same line, or leaves a place beside it. Those that are not far are looked for
-    again only when some point has moved far enough."""
+    """The points of a mesh that are nearer to each other than they should be.
 
-    ROOM = 0.3  # how much farther than is near is not far
+    These are places and crossings, and points of lines with whatever else is on a walk with them,
+    except what is on the same line, or leaves a place beside it. The points that are not far are
+    looked for again only when some point has moved far enough.
+    """
+
+    ROOM = 0.3  # additional distance within which points count as not far
 
     def __init__(self, mesh: Mesh, places: int, near: tuple[float, float, float, float]) -> None:
         self.near, self.places, self.stars = near, places, len(mesh.world.stars)
@@ -204,7 +214,7 @@ class Neighbours:
         on = {(point, number) for number, walk in enumerate(mesh.walks) for point in walk}
         self.many = len(mesh.walks)
         self.on = np.array(sorted(point * self.many + number for point, number in on))
-        self.walks = np.full((2, self.size), -1)  # of each point of a line
+        self.walks = np.full((2, self.size), -1)  # for each point of a line
         for point, number in sorted(on):
             if point >= self.stars:
                 self.walks[int(self.walks[0, point] >= 0), point] = number
@@ -233,7 +243,7 @@ class Neighbours:
         far = self.near[0] + self.ROOM
         one, other = stars.query_pairs(far, output_type="ndarray").T
         three, four = KDTree(points).query_pairs(self.near[2] + self.ROOM, output_type="ndarray").T
-        line = four >= self.stars  # else the pair is there already
+        line = four >= self.stars  # otherwise the pair is there already
         three, four = three[line], four[line]
         shared = np.zeros(len(three), bool)
         for walks in self.walks:
@@ -247,7 +257,7 @@ class Neighbours:
 
 
 def _both(*points: Numbers) -> Numbers:
-    """The numbers of points, both coordinates of each."""
+    """The numbers of points, with both coordinates of each."""
     return np.concatenate([np.stack([2 * n, 2 * n + 1]) for n in points])
 
 
@@ -256,7 +266,7 @@ def _ways(factors: Sequence[int], size: int) -> Points:
 
 
 def _apart(along: Points) -> Points:
-    """How the distance of two points grows with their coordinates."""
+    """The derivatives of the distance of two points by their coordinates."""
     return np.vstack([-along.T, along.T])
 
 
@@ -265,6 +275,6 @@ def _aside(along: Points) -> Points:
 
 
 def _unit(side: Points) -> tuple[Points, Points]:
-    """Directions, and lengths."""
+    """The directions of vectors, and their lengths."""
     length = np.linalg.norm(side, axis=1)
     return side / length[:, None], length

@@ -1,7 +1,7 @@
-"""Pictures in SVG, to be put into a page: maps, views, and a plot of numbers.
+"""Pictures in SVG for a page: maps, views, and a plot of numbers.
 
-What it looks like is the style sheet's; places are circles, links and stubs lines, in whole
-units, so that the text is short.
+The style sheet determines what they look like. Places are circles, and links and stubs are lines,
+in whole units, so that the text is short.
 """
 
 import math
@@ -22,8 +22,10 @@ def body(
     apart: Collection[Link] = (),
     strange: Collection[Place] = (),
 ) -> str:
-    """The places, links and pending gateways of a map; if it is not small, the faces and the
-    steps too. The links ``apart`` and the ``strange`` places are set off."""
+    """The places, links and pending gateways of a map; if it is not small, the faces and steps.
+
+    The links ``apart`` and the ``strange`` places are highlighted.
+    """
     world, steps = scene.world, scene.steps()
     parts = []
     for number, outline, (x, y) in () if small else drawn.faces:
@@ -87,6 +89,7 @@ def _gateways(drawn: Drawing, world: TopologicalMap) -> list[str]:
 
 
 def path(line: Sequence[Point]) -> str:
+    """A line as the data of an SVG path."""
     return "M" + " ".join(f"{x} {y}" for x, y in line)
 
 
@@ -96,16 +99,16 @@ def _lines(kind: str, paths: Sequence[str]) -> list[str]:
 
 
 class Dots:
-    """Points on lines, nine on each, to be found by where they are."""
+    """Points on lines, nine on each, which are found by their position."""
 
     def __init__(self, lines: Sequence[Line]) -> None:
-        from scipy.spatial import KDTree  # it takes its time
+        from scipy.spatial import KDTree  # loading it takes time
 
         self.points = [_at(line, n / 10) for line in lines for n in range(1, 10)]
         self.tree = KDTree(self.points)
 
     def far(self, spot: Point, own: Collection[int]) -> int:
-        """How far a point is from the lines that are not its own, up to a length that is enough."""
+        """How far a point is from the lines that are not its own, up to a sufficient distance."""
         near = self.tree.query_ball_point(spot, APART // 2)
         others = (self.points[n] for n in near if n // 9 not in own)
         return min([APART // 2, *(int(math.dist(spot, dot)) for dot in others)])
@@ -132,7 +135,7 @@ def _at(line: Line, share: float) -> Point:
 
 
 def agent(drawn: Drawing, dstate: Gateway) -> str:
-    """The agent at the gateway where it stands."""
+    """The agent at its gateway."""
     (x, y), (a, b) = drawn.lines[dstate][0], way_of(drawn.lines[dstate])
     foot = x + 1.2 * RADIUS * a, y + 1.2 * RADIUS * b
     corners = ((12, 0), (0, 6), (0, -6))
@@ -154,7 +157,7 @@ def picture(
 
 
 def view(name: str, slots: int, seen: Collection[int]) -> str:
-    """A view: the gateways, that where the agent stands at the bottom."""
+    """A view: the gateways, with the one where the agent stands at the bottom."""
     size = 17
     ways = []
     for slot in sorted(seen):
@@ -170,13 +173,14 @@ def view(name: str, slots: int, seen: Collection[int]) -> str:
 
 
 def plot(name: str, series: Mapping[str, Sequence[int | None]]) -> str:
-    """Numbers by step, on a log scale; what is None is left out."""
+    """Plot numbers by step, on a logarithmic scale; None is left out."""
     width, height, left, bottom, top = 720, 300, 84, 44, 34
     last = max(1, max(len(values) for values in series.values()) - 1)
     most = max([v for values in series.values() for v in values if v], default=1)
     decades = max(1, math.ceil(math.log10(most)))
 
     def point(step: int, value: int) -> Point:
+        """The point of a step and its value."""
         x = left + step * (width - left - 14) / last
         return round(x), round(height - bottom - math.log10(value) * room / decades)
 

@@ -1,10 +1,10 @@
-"""Maps in a terminal: drawn with characters, then told in words.
+"""Maps in a terminal: drawn with characters, and then described in words.
 
-Straight maps along two directions are drawn with lines of characters, columns and rows by the
-order of the places, so that lengths may be uneven; all others with the dots of Braille. Places
-are bare numbers, the agent's in brackets, with an arrow for the gateway where it stands; faces
-are numbers in parentheses. A pending gateway is a short stub with an open end. A link that would
-cross others is two stubs with one letter, or a line of dots.
+Straight maps along two directions are drawn with line characters, with columns and rows by the
+order of the places, so that lengths may be uneven. All others are drawn with the dots of Braille.
+Places are bare numbers, the agent's in brackets, with an arrow for its gateway; faces are numbers
+in parentheses. A pending gateway is a short stub with an open end. A link that would cross others
+is two stubs with one letter, or a line of dots.
 """
 
 import math
@@ -26,19 +26,22 @@ from topomap.runtime.watch import Late, never
 Cell = tuple[int, int]  # row and column
 PLACE, AGENT, LINK, CROSSING, PENDING, SIGN, FACE = "1", "1;33", "", "31", "34", "1;32", "2"
 ARROWS = "→↗↑↖←↙↓↘"  # counter-clockwise, 45 degrees apart
-ENDS = {(0, 1): "─╴", (0, -1): "─╶", (1, 0): "│╵", (-1, 0): "│╷"}  # of stubs, by direction
+# The characters of stubs, by direction.
+ENDS = {(0, 1): "─╴", (0, -1): "─╶", (1, 0): "│╵", (-1, 0): "│╷"}
 LETTERS = ascii_letters[26:] + ascii_letters[:26].replace("v", "").replace("o", "")
 OPEN = "o"  # the end of a stub of dots
 BRAILLE = 0x2800
-DOTS = ((0x01, 0x08), (0x02, 0x10), (0x04, 0x20), (0x40, 0x80))  # of a character, by row
+# The bits of a Braille character, by row.
+DOTS = ((0x01, 0x08), (0x02, 0x10), (0x04, 0x20), (0x40, 0x80))
 ASCII = str.maketrans(
     "─│╴╶╵╷" + ARROWS + "".join(map(chr, range(BRAILLE + 1, BRAILLE + 256))),
     "-|oooo" + ">/^\\</v\\" + "." * 255,
 )
-SAME = 0.03  # coordinates that differ less are one row or column; layouts keep lines 0.05 apart
-ACROSS, DOWN, FACING = 5, 3, 5  # free cells between columns, and rows; where two stubs face
-FINEST = 28.0  # dots that a link of length 1 takes
-LARGER = 1.2, 8  # where numbers fall onto each other: how much, and how often at most
+SAME = 0.03  # smaller differences are one row or column; layouts keep lines 0.05 apart
+# Free cells between columns, between rows, and between two facing stubs.
+ACROSS, DOWN, FACING = 5, 3, 5
+FINEST = 28.0  # the largest number of dots of a link of length 1
+LARGER = 1.2, 8  # if numbers overlap: the factor, and how often it is applied at most
 
 
 class Taken(Exception):
@@ -52,7 +55,11 @@ class Canvas:
         self.cells: dict[Cell, tuple[str, str]] = {}
 
     def put(self, row: int, column: int, text: str, colour: str, over: bool = False) -> None:
-        """Write a text from a cell on. Raises Taken if something is there, unless ``over``."""
+        """Write a text, beginning in a cell.
+
+        Raises:
+            Taken: Something is there already, and ``over`` is false.
+        """
         for number, character in enumerate(text, column):
             if not over and (row, number) in self.cells:
                 raise Taken
@@ -78,9 +85,14 @@ def _in_colour(text: str, colour: str) -> str:
 
 
 def drawn(scene: Scene, width: int, coloured: bool = False, late: Late = never) -> tuple[str, str]:
-    """A map in a terminal of that many columns. Maps of lines are as wide as they need; maps of
-    dots fit, unless numbers would fall onto each other: then they are up to four times as wide.
-    The second text says that the drawing is plain, if it is (see ``layout``)."""
+    """Draw a map in a terminal of that many columns.
+
+    Maps of lines are as wide as they need. Maps of dots fit, unless numbers would overlap: then
+    they are up to four times as wide.
+
+    Returns:
+        The map, and a note if the drawing is plain (see ``layout``).
+    """
     world = scene.world
     where = scene.where()
     laid = None if scene.like else straight(world, scene.ahead, late, where)
@@ -98,7 +110,7 @@ def drawn(scene: Scene, width: int, coloured: bool = False, late: Late = never) 
 
 
 def _letters(laid: Layout) -> dict[Gateway, str]:
-    """Of each gateway of a link that would cross others the letter, while there are some."""
+    """The letter of each gateway of a link that would cross others, while there are letters."""
     return {
         gateway: LETTERS[number] if number < len(LETTERS) else "?"
         for number, link in enumerate(laid.crossing)
@@ -107,7 +119,7 @@ def _letters(laid: Layout) -> dict[Gateway, str]:
 
 
 def _names(scene: Scene) -> dict[Place, tuple[str, str]]:
-    """What stands for each place, and its colour."""
+    """The name of each place, and its colour."""
     world = scene.world
     names = {
         place: (label(place), SIGN if world.landmarks.get(place) else PLACE)
@@ -120,7 +132,7 @@ def _names(scene: Scene) -> dict[Place, tuple[str, str]]:
 
 
 def boxes(scene: Scene, laid: Layout, letters: dict[Gateway, str]) -> Canvas | None:
-    """The map in lines of characters; None if a line bends, is aslant, or would touch others."""
+    """The map in line characters; None if a line bends, is oblique, or would touch others."""
     ahead: dict[Gateway, Cell] = {}
     for gateway, line in laid.lines.items():
         x, y = line[-1] - line[0]
@@ -146,7 +158,7 @@ def _boxes(
     )
     facing = {upper for upper, at in down if (upper + 1, at) in up}
     tall = [FACING if upper in facing else DOWN for upper in range(max(row.values()))]
-    out, into = [0] * len(names), [0] * len(names)  # of each column, right and left of its middle
+    out, into = [0] * len(names), [0] * len(names)  # for each column, right and left of its middle
     for place, (name, _) in names.items():
         into[column[place]] = max(into[column[place]], _before(name))
         out[column[place]] = max(out[column[place]], len(name) - 1 - _before(name))
@@ -200,7 +212,7 @@ def _before(name: str) -> int:
 
 
 def _ranks(values: dict[Place, float]) -> dict[Place, int]:
-    """The number of each value in their order, those that are nearly the same alike."""
+    """The rank of each value; values that are nearly equal have the same rank."""
     ranks: dict[Place, int] = {}
     start, rank = -math.inf, -1
     for place, value in sorted(values.items(), key=lambda item: item[1]):
@@ -253,7 +265,7 @@ def _number_faces(
 
 
 def dots(scene: Scene, laid: Layout, width: int) -> Canvas:
-    """The map in dots, in as many columns as there are, or more if numbers would meet."""
+    """The map in dots, in that many columns, or in more if numbers would overlap."""
     names = _names(scene)
     points = np.concatenate([*laid.lines.values(), *([p] for p in laid.places.values())])
     low, high = points.min(0), points.max(0)
@@ -277,7 +289,7 @@ def dots(scene: Scene, laid: Layout, width: int) -> Canvas:
     for gateway, line in lines.items():
         other = scene.world.links.get(gateway)
         if other in lines and other < gateway:
-            continue  # drawn from its other end
+            continue  # it is drawn from its other end
         for x, y in _along(line):
             at = _cell((x, y))
             passing[at].add(gateway)
@@ -285,6 +297,7 @@ def dots(scene: Scene, laid: Layout, width: int) -> Canvas:
     crossing = {end for link in laid.crossing for end in link}
 
     def colour_of(gateway: Gateway) -> str:
+        """The colour of the line of a gateway."""
         links = scene.world.links
         return CROSSING if gateway in crossing else LINK if gateway in links else PENDING
 
@@ -310,6 +323,7 @@ def dots(scene: Scene, laid: Layout, width: int) -> Canvas:
             canvas.put(*free, arrow, AGENT, over=True)
 
     def outline(face: list[Gateway]) -> list[tuple[float, float]]:
+        """The outline of a face, in dots."""
         return [(x / 2 - 0.5, 0.5 - y / 4) for x, y in (laid.outline(face) - low) * scale]
 
     _number_faces(canvas, laid, outline)
@@ -323,7 +337,7 @@ def _cell(point: Sequence[float] | Points) -> Cell:
 
 
 def _along(line: Points) -> Iterator[tuple[float, float]]:
-    """Points of a line, no farther apart than dots."""
+    """Points of a line that are no farther apart than dots."""
     for (x, y), (to_x, to_y) in pairwise(line.tolist()):
         steps = max(1, math.ceil(max(abs(to_x - x), abs(to_y - y))))
         for n in range(steps + 1):
@@ -331,10 +345,11 @@ def _along(line: Points) -> Iterator[tuple[float, float]]:
 
 
 def words(scene: Scene, laid: Layout, letters: dict[Gateway, str]) -> Iterator[str]:
-    """What the picture shows, line by line. ``P.S`` is gateway S of place P."""
+    """What the picture shows, line by line; ``P.S`` is gateway S of place P."""
     world = scene.world
 
     def letter(gateway: Gateway) -> str:
+        """The letter of a gateway, if its link would cross others."""
         return f"{letters[gateway]} " if gateway in letters else ""
 
     if scene.at:

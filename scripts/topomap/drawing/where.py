@@ -1,8 +1,8 @@
-"""Where the places of a map are, by what was measured on the way: a compass, lengths, odometry.
+"""Where the places of a map are, by what was measured: a compass, lengths, odometry.
 
-Each travel tells about how far, and in which direction, its end is from its beginning. Places are
-where they fit all travels best, by least squares; a travel that fits badly counts less. North, the
-compass's slot 0, is up; without a compass the second axis of the odometry is.
+Each travel tells roughly how far, and in which direction, its end is from its beginning. Places are
+where they fit all travels best, by least squares; a travel that fits badly counts less. North,
+which is the compass's slot 0, is up; without a compass it is the second axis of the odometry.
 """
 
 import cmath
@@ -20,8 +20,8 @@ from topomap.drawing.mesh import Points
 from topomap.model.experience import DState, Experience
 from topomap.model.topology import Place
 
-ROUNDS = 8  # of the least squares, in which what fits badly counts less and less
-USUAL = 1.5  # times the middle error that a travel may have before it counts less
+ROUNDS = 8  # rounds of the least squares, with new weights in each
+USUAL = 1.5  # a travel with more than so many times the median error counts less
 UNKNOWN = 0.02  # the weight of a travel of which nothing is known
 
 
@@ -77,7 +77,7 @@ def _travels(seen: Experience, at: Sequence[DState]) -> list[Travel]:
 
 
 def _turn(slot: float, slots: int) -> complex:
-    """The turn by so many slots clockwise."""
+    """The rotation by so many slots clockwise."""
     return cmath.exp(-2j * math.pi * slot / slots)
 
 
@@ -91,7 +91,7 @@ def _by_compass(seen: Experience, at: Sequence[DState]) -> dict[Place, complex]:
 
 
 def _sums(travels: Sequence[Travel], slots: int) -> dict[Place, complex]:
-    """Of each place the sum of the directions of its slot 0 by the shifts of travels."""
+    """For each place the sum of the directions of its slot 0 by the shifts of travels."""
     sums: dict[Place, complex] = defaultdict(complex)
     for out, arrival, shift, _ in travels:
         if shift is not None:
@@ -108,9 +108,11 @@ def _by_shifts(travels: Sequence[Travel], slots: int) -> dict[Place, complex]:
 def _in_its_frame(
     travels: Sequence[Travel], norths: Mapping[Place, complex], slots: int
 ) -> list[Travel]:
-    """The travels with their shifts turned so that they agree with the compass. Their second axis
-    may lead north or south, which is told by the order of the gateways; and their unit need not be
-    that of the lengths, which is theirs if both are told of a travel."""
+    """The travels with their shifts turned so that they agree with the compass.
+
+    Their second axis may lead north or south, which the order of the gateways tells. Their unit
+    need not be that of the lengths; it is converted if both are told of a travel.
+    """
     both = [
         abs(travel.shift) / travel.length for travel in travels if travel.shift and travel.length
     ]
@@ -135,8 +137,10 @@ def _in_its_frame(
 
 
 def _move(travel: Travel, norths: Mapping[Place, complex], slots: int) -> tuple[complex, bool]:
-    """How far a travel leads, and whether its length is known; 0 if its direction is not. A way
-    whose ends are not in line is taken for an arc, which is longer than its chord."""
+    """How far a travel leads, and whether its length is known; 0 if its direction is not known.
+
+    A way whose ends are not in line is taken for an arc, which is longer than its chord.
+    """
     if travel.shift is not None:
         return travel.shift, True
     ways = []
@@ -154,7 +158,7 @@ def _move(travel: Travel, norths: Mapping[Place, complex], slots: int) -> tuple[
 
 
 def _fitted(rows: Sequence[tuple[int, int, complex, float]], many: int) -> Points:
-    """Points with such differences, by least squares: what fits badly counts less."""
+    """Points with such differences, by least squares, in which what fits badly counts less."""
     if not rows:
         return np.zeros((many, 2))
     one, other, ways, base = (np.array(column) for column in zip(*rows, strict=True))

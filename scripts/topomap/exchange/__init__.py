@@ -1,1 +1,1 @@
-"""Maps for other tools, and back."""
+"""Maps that are written for other tools, and read back."""

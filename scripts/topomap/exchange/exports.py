@@ -1,8 +1,8 @@
-"""Maps for other tools: GraphML and JSON (node-link), which ``imports`` reads back, DOT,
-clingraph, and the tmap2 of robots.
+"""Maps for other tools.
 
-As a graph a map is a networkx MultiGraph: a node is a place, an edge a link. Lists are JSON
-texts in GraphML, which has none.
+The formats are GraphML and JSON (node-link), which ``imports`` reads back, DOT, clingraph, and the
+tmap2 of robots. As a graph a map is a networkx MultiGraph: a node is a place, and an edge is a
+link. In GraphML, which has no lists, lists are JSON texts.
 """
 
 import json
@@ -27,10 +27,18 @@ if TYPE_CHECKING:
 
 Node = tuple[Place | Gateway, dict[str, str]]
 Edge = tuple[Place | Gateway, Place | Gateway, dict[str, str]]
-LISTS = {"at", "rests", "gateways", "landmarks", "ends", "steps", "back"}  # lists
-POINTS, RADIUS = 72, 0.15  # that a link of length 1 takes, in DOT; of a place, in such lengths
+LISTS = {
+    "at",
+    "rests",
+    "gateways",
+    "landmarks",
+    "ends",
+    "steps",
+    "back",
+}  # attributes that are lists
+POINTS, RADIUS = 72, 0.15  # in DOT: points of a link of length 1; and, in lengths, of a place
 COMMON = {
-    "graph": {"inputscale": "72"},  # what says that positions are in points
+    "graph": {"inputscale": "72"},  # positions are in points
     "graph_nodes": {
         "shape": "circle",
         "width": f"{2 * RADIUS:g}",
@@ -43,8 +51,10 @@ STUB = {"shape": "point", "width": "0.06"}
 
 
 def _placed(scene: Scene, laid: "Layout | None") -> "nx.MultiGraph[int]":
-    """The map as a graph, whose nodes have coordinates ``x`` and ``y``, in the lengths of links, if
-    it is told where they are."""
+    """The map as a graph whose nodes have coordinates ``x`` and ``y``, in lengths of links.
+
+    There are none if it is not told where the places are.
+    """
     graph = graph_of(scene)
     for place, (x, y) in _points(laid).items() if laid else ():
         graph.nodes[place].update(x=x, y=y)
@@ -52,9 +62,10 @@ def _placed(scene: Scene, laid: "Layout | None") -> "nx.MultiGraph[int]":
 
 
 def _points(laid: "Layout") -> dict[Place, tuple[float, float]]:
-    """Where the places are."""
+    """The positions of the places."""
 
     def near(number: float) -> float:
+        """Round a coordinate."""
         return round(float(number), 4) + 0.0  # -0 becomes 0
 
     return {place: (near(point[0]), near(point[1])) for place, point in laid.places.items()}
@@ -63,10 +74,10 @@ def _points(laid: "Layout") -> dict[Place, tuple[float, float]]:
 def graph_of(scene: Scene) -> "nx.MultiGraph[int]":
     """The map as a graph.
 
-    Of the graph ``at`` is the route, ``[[T,P,S], ...]``, and ``rests`` are the steps of it that are
-    no travel, if there are any; of a node the attributes are its ``gateways`` and ``landmarks``; of
-    an edge its ``ends``, two gateways ``[P,S]``, and the ``steps`` that travel it from the first to
-    the second, and ``back``.
+    The attribute ``at`` of the graph is the route, ``[[T,P,S], ...]``, and ``rests`` has the steps
+    of it that are not a travel, if there are any. The attributes of a node are its ``gateways`` and
+    ``landmarks``. Those of an edge are its ``ends``, two gateways ``[P,S]``, the ``steps`` that
+    travel it from the first to the second, and those that travel it ``back``.
     """
     world = scene.world
     graph: nx.MultiGraph[int] = nx.MultiGraph(
@@ -103,8 +114,10 @@ def node_link(scene: Scene, laid: "Layout | None" = None) -> str:
 
 
 def _drawing(scene: Scene, laid: "Layout") -> tuple[list[Node], list[Edge]]:
-    """The map where ``draw`` has it, in attributes of Graphviz, lengths in points. The stub of a
-    pending gateway ends in a node of its own; a link that crosses others is dashed."""
+    """The map as ``draw`` draws it, in attributes of Graphviz, with lengths in points.
+
+    The stub of a pending gateway ends in a node of its own. A link that crosses others is dashed.
+    """
     world = scene.world
     steps = scene.steps()
     nodes: list[Node] = []
@@ -127,13 +140,16 @@ def _drawing(scene: Scene, laid: "Layout") -> tuple[list[Node], list[Edge]]:
 
 
 def _point(point: "Points") -> str:
-    # 0 is added to what is rounded: -0 becomes 0.
+    # Adding 0 turns -0 into 0.
     return ",".join(f"{round(float(number) * POINTS, 2) + 0:g}" for number in point)
 
 
 def _spline(line: "Points", ends: int) -> str:
-    """A line as a spline: each of its sides is one, with control points at its thirds. It begins,
-    and if it has two ``ends`` it ends, at the circle of a place."""
+    """A line as a spline.
+
+    Each of its sides is a piece of the spline, with control points at its thirds. It begins at the
+    circle of a place, and ends at one if it has two ``ends``.
+    """
     line = line.copy()
     for here, there in ((0, 1), (-1, -2))[:ends]:
         way = line[there] - line[here]
@@ -147,12 +163,14 @@ def _label(scene: Scene, laid: "Layout") -> str:
 
 
 def dot(scene: Scene, laid: "Layout") -> str:
-    """The map in the language of Graphviz: ``neato -n2`` draws it as ``draw`` does."""
+    """The map in the language of Graphviz; ``neato -n2`` draws it as ``draw`` does."""
 
     def name(node: Place | Gateway) -> str:
+        """The name of a node."""
         return f'"{gid(node)}"' if isinstance(node, tuple) else f'"{node}"'
 
     def told(attributes: dict[str, str]) -> str:
+        """Attributes in the language of Graphviz."""
         quoted = ((k, escaped(v).replace('"', '\\"')) for k, v in attributes.items())
         return "[" + ", ".join(f'{key}="{value}"' for key, value in quoted) + "];"
 
@@ -165,7 +183,7 @@ def dot(scene: Scene, laid: "Layout") -> str:
 
 
 def escaped(text: str) -> str:
-    """A text as Graphviz reads texts in which a backslash begins a sign."""
+    """Escape a text for Graphviz, where a backslash begins an escape."""
     return "\\n".join(printable(line).replace("\\", "\\\\") for line in text.split("\n"))
 
 
@@ -173,8 +191,9 @@ def clingraph(scene: Scene, laid: "Layout") -> str:
     """The map as facts of clingraph, for its default graph and the engine neato."""
 
     def told(kind: str, identifier: str, attributes: dict[str, str]) -> Iterator[str]:
+        """The facts about the attributes of a node or an edge."""
         for key, value in attributes.items():
-            # A value by a variable, here the key, is no template of clingraph.
+            # In clingraph a value with a variable, here the key, is not a template.
             string = clingo.String(escaped(value))
             yield f"attr({kind},{identifier},({key},value),{string})."
 
@@ -194,7 +213,7 @@ def _term(node: Place | Gateway) -> str:
 
 
 def tmap2(scene: Scene, laid: "Layout") -> str:
-    """The map as a tmap2, a length of 1 in the drawing taken for a metre."""
+    """The map as a tmap2; a length of 1 in the drawing is taken for a metre."""
     world = scene.world
     points = _points(laid)
     stops = [

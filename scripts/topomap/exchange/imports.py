@@ -15,8 +15,14 @@ from topomap.worlds.readers.graphml import read_graphml
 
 
 def import_map(file: str) -> str:
-    """What ``solve --json`` writes of the map in a file of GraphML or node-link JSON. Raises
-    InputError, one line, if there is none that ``export`` writes."""
+    """Read a map from a file of GraphML or node-link JSON.
+
+    Returns:
+        What ``solve --json`` writes of the map.
+
+    Raises:
+        InputError: There is no map in it as ``export`` writes it. One line.
+    """
     content = read_bytes(file)
     if content.lstrip(b"\xef\xbb\xbf \t\r\n")[:1] == b"<":
         graph = read_graphml(file, content, int)
@@ -27,7 +33,7 @@ def import_map(file: str) -> str:
             graph = nx.node_link_graph(told, edges="edges")
         except (MemoryError, InputError):
             raise
-        except Exception:  # networkx checks nothing
+        except Exception:  # networkx raises all kinds of errors on bad files
             raise InputError(f"{file}: not a graph in JSON that networkx reads") from None
     return _document(file, graph)
 
@@ -70,13 +76,13 @@ def _document(file: str, graph: "nx.Graph[Any]") -> str:
     if not same:
         raise InputError(f"{file}: gateways, landmarks, steps or genus do not fit the links and at")
     claims["horizon"] = len(scene.at) - 1
-    # There may be more maps of that kind than this one.
+    # There may be other maps of that kind.
     made = {**claims, "maps": [map_json(scene.world, scene.at)], "kind": kind, "count": 1}
     return formats.line(made, "a single map, imported")
 
 
 def _told(graph: "nx.Graph[Any]") -> str:
-    """What a graph says of a map, but for names: other tools may add what they like."""
+    """What a graph says of a map; attributes that other tools have added are passed over."""
     whole = [graph.graph.get(key) for key in ("slots", "genus", "at", "rests")]
     places = [
         [place, *(attributes.get(key) for key in ("gateways", "landmarks"))]

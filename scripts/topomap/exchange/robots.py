@@ -1,11 +1,11 @@
-"""The tmap2 of topological_navigation, which robots go by (ROS and ROS 2): YAML.
+"""The tmap2 of topological_navigation, a format of maps for robots (ROS and ROS 2), in YAML.
 
-Each node has a pose, its position in metres, and edges to its neighbours. What topomap knows
-besides stands where such a map has room for it, so that ``worlds/readers/tmap2.py`` reads the same
-world: under ``meta`` the ``slots``, where slot 0 points (``north``), and the pairs that are
-``straight``; under the ``properties`` of an edge the ``slot`` by which it leaves, that by which it
-arrives (``back``), and how far it leads (``move``); under those of a node ``gateways``,
-``landmarks`` and a ``title``.
+Each node has a pose, which is its position in metres, and edges to its neighbours. What else
+topomap knows stands where such a map has room for it, so that ``worlds/readers/tmap2.py`` reads the
+same world. Under ``meta`` are the ``slots``, where slot 0 points (``north``), and the pairs of
+gateways on one path (``straight``). Under the ``properties`` of an edge are the ``slot`` by which
+it leaves, the slot by which it arrives (``back``), and how far it leads (``move``). Under those of
+a node are ``gateways``, ``landmarks`` and a ``title``.
 """
 
 from collections.abc import Iterable, Sequence
@@ -16,13 +16,13 @@ import yaml
 from topomap.model.topology import Place
 
 ACTION = "navigate_to_pose"
-# A date is demanded. It is the same in all files, so that the same map gives the same bytes.
+# The format needs a date. It is always this one, so that one map always gives the same bytes.
 UPDATED = "01-01-1970_00-00-00"
-ZONE = 0.5  # metres: half a side of the square round a node in which a robot is said to be there
+ZONE = 0.5  # metres: half the side of the square in which a robot counts as being at a node
 
 
 class Node(NamedTuple):
-    """A place: its name, where it is, its gateways and landmarks, and what else it is called."""
+    """A place: its name, its position, its gateways and landmarks, and its title."""
 
     name: str
     point: tuple[float, float]
@@ -32,8 +32,11 @@ class Node(NamedTuple):
 
 
 class Edge(NamedTuple):
-    """A way in one direction: by which slot it leaves which place, where it arrives, and how far it
-    leads, east and north."""
+    """A way in one direction.
+
+    It has the place and the slot that it leaves, the place and the slot where it arrives, and how
+    far it leads, east and north.
+    """
 
     place: str
     slot: int
@@ -43,9 +46,10 @@ class Edge(NamedTuple):
 
 
 class _Dumper(getattr(yaml, "CSafeDumper", yaml.SafeDumper)):  # type: ignore[misc]
-    """The safe writer, without aliases."""
+    """The safe writer of YAML, without aliases."""
 
     def ignore_aliases(self, data: Any) -> bool:
+        """Write equal data twice, without an alias."""
         return True
 
 
@@ -57,7 +61,7 @@ def tmap2_text(
     edges: Iterable[Edge],
     straight: Sequence[tuple[Place, int, int]] | None = None,
 ) -> str:
-    """A tmap2 as text; ``edges`` has each way in both directions."""
+    """Write a tmap2; ``edges`` has each way in both directions."""
     leaving: dict[str, list[Edge]] = {}
     for edge in edges:
         leaving.setdefault(edge.place, []).append(edge)

@@ -19,21 +19,25 @@ _NO_XML = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 
 
 def world_text(environment: Environment, form: str) -> str:
-    """A world as the text of a file. Who reads it has the same slots, links, landmarks and moves,
-    and the same places by their labels. Where places are is told by the moves of a world that has
-    no points.
+    """Write a world as the text of a file.
+
+    The world that is read back has the same slots, links, landmarks and moves, and the same places
+    by their labels. If a world has no points, its moves tell where places are.
 
     Parameters:
-        environment: the world.
+        environment: The world.
         form: ``graphml``, ``json`` (node-link) or ``tmap2``.
 
+    Returns:
+        The text.
+
     Raises:
-        InputError: one line, if a name cannot be written in this format, if two places have one
-            label, or if it is not told where a place of a tmap2 is.
-        ValueError: on another ``form``.
+        InputError: A name cannot be written in this format, two places have one label, or it is not
+            known where a place of a tmap2 is. One line.
+        ValueError: ``form`` is another one.
     """
     if form not in WRITERS:
-        raise ValueError(f"{form!r} is none of {', '.join(WRITERS)}")
+        raise ValueError(f"{form!r} is not one of {', '.join(WRITERS)}")
     labels = [label(place) for place in environment.map.stars]
     if len({*labels}) < len(labels):
         raise InputError(f"{environment.name}: two places have one label")
@@ -46,7 +50,11 @@ FORMS = {".graphml": "graphml", ".json": "json", ".yaml": "tmap2", ".yml": "tmap
 
 
 def form_of(file: str | Path) -> str:
-    """The format of a file to write, by the end of its name. Raises InputError."""
+    """Tell the format of a file to write by the ending of its name.
+
+    Raises:
+        InputError: The ending is not known.
+    """
     end = Path(file).suffix.lower()
     if end not in FORMS:
         raise InputError(f"{file}: a file with a world ends in {', '.join(FORMS)}")
@@ -54,9 +62,11 @@ def form_of(file: str | Path) -> str:
 
 
 def points_of(environment: Environment) -> dict[Place, Point]:
-    """Where places are, as far as the moves tell it: from the first place of each part, along the
-    ways by which one comes first to a place. If the world is not flat, as a torus is not, other
-    ways may lead elsewhere."""
+    """Find out where places are, as far as the moves tell it.
+
+    In each component, positions are counted from the first place, along the ways by which a place
+    is first reached. If the world is not flat, as a torus is not, other ways may lead elsewhere.
+    """
     where: dict[Place, Point] = {}
     moves, links = environment.moves, environment.map.links
     if not moves:

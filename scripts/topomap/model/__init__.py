@@ -1,1 +1,1 @@
-"""What is talked about: experiences, maps, queries, and their words."""
+"""The subject matter: experiences, maps, queries, and their words."""

@@ -1,5 +1,7 @@
-"""Which of two maps is preferred by set inclusion, from the definition: the policy of
-circumscription (the paper, section II)."""
+"""The policy of circumscription: which of two maps is preferred, by set inclusion.
+
+It is computed from the definition (the paper, section II).
+"""
 
 from collections.abc import Callable, Hashable, Iterable, Sequence
 from typing import NamedTuple
@@ -7,15 +9,15 @@ from typing import NamedTuple
 from topomap.model.experience import DState, Experience
 from topomap.model.topology import Gateway
 
-OFTEN = 64  # comparisons of one set with all others between two looks at the clock
+OFTEN = 64  # sets that are compared with all others between two looks at the clock
 
 
 class Extent(NamedTuple):
     """The paths and the places of a map, by names that do not depend on the map.
 
-    By ``extent``, a path is named by the first step that travelled it, ``("first", T)``, or, if
-    none did, by a place and the lower one of its slots there, ``("axis", P, S)``; a place by the
-    step of its first visit.
+    ``extent`` names a path by the first step that travelled it, ``("first", T)``, or, if no step
+    did, by a place and the lower one of its slots there, ``("axis", P, S)``. It names a place by
+    the step of its first visit.
     """
 
     paths: frozenset[Hashable]
@@ -23,11 +25,11 @@ class Extent(NamedTuple):
 
 
 def extent(experience: Experience, at: Sequence[DState]) -> Extent:
-    """The paths and places of a hypothesis, given by its dstate after each step."""
+    """Find the paths and places of a hypothesis, given by its dstate after each step."""
     world = experience.map_of(tuple(at))
     first: dict[Gateway, int] = {}
     for step, arrival in reversed([*enumerate(at)][1:]):
-        # Step T arrived at its gateway through the path that leads through it.
+        # Step T travelled the path on which its gateway of arrival lies.
         first[arrival] = first[world.opposite(arrival)] = step
     paths: set[Hashable] = set()
     for path in world.paths():
@@ -42,9 +44,12 @@ def extent(experience: Experience, at: Sequence[DState]) -> Extent:
 
 
 def least(extents: Iterable[Extent], tick: Callable[[], None] = lambda: None) -> set[Extent]:
-    """Those that none is preferred to: no other one has some but not all of their paths and no
-    others, or the same paths, and some but not all of their places and no others. ``tick`` is
-    called now and then, and may end it by an error."""
+    """Select the extents to which no other one is preferred.
+
+    One extent is preferred to another if its paths are a proper subset of the paths of the other,
+    or if the paths are the same and its places are a proper subset of the places of the other.
+    ``tick`` is called now and then, and may end the work by an error.
+    """
     by_paths: dict[frozenset[Hashable], set[frozenset[Hashable]]] = {}
     for paths, places in extents:
         by_paths.setdefault(paths, set()).add(places)
@@ -58,12 +63,12 @@ def least(extents: Iterable[Extent], tick: Callable[[], None] = lambda: None) ->
 def _least(
     sets: Iterable[frozenset[Hashable]], tick: Callable[[], None]
 ) -> list[frozenset[Hashable]]:
-    """The sets that have none of the others as a part. Each is compared as bits of a number."""
+    """Select the sets of which no other set is a subset; each is compared as bits of a number."""
     bits: dict[Hashable, int] = {}
     kept: list[int] = []
     found = []
-    # A part of a set is smaller, and so comes before it; and if it is not itself kept, a part of
-    # it is.
+    # A subset is smaller than its set, so it comes first; and if the subset is not kept itself, a
+    # subset of it is.
     for number, one in enumerate(sorted(sets, key=len)):
         if number % OFTEN == 0:
             tick()

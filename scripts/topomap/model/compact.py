@@ -1,9 +1,11 @@
-"""The map of a hypothesis in numbers, for answers of a million maps: what is the same in all maps
-of an experience is worked out once.
+"""The map of a hypothesis in numbers, for answers of a million maps.
 
-A gateway, or bare direction, is the number ``place * slots + slot``; a place is the step of its
-first visit. Where it is told which gateways are on one path, the direction behind a gateway G that
-ends its path is -1 - G. ``TopologicalMap`` is the definition; tests find the two equal.
+What is the same in all maps of an experience is computed once. ``TopologicalMap`` is the
+definition; tests find the two equal.
+
+A gateway, or a direction without a gateway, is the number ``place * slots + slot``; a place is the
+step of its first visit. Where it is told which gateways are on one path, the direction behind a
+gateway G that ends its path is -1 - G.
 """
 
 from collections.abc import Sequence
@@ -14,8 +16,11 @@ Number = int
 
 
 class Numbering:
-    """What all maps of one experience have in common. Each step of these arrives at a gateway that
-    is seen there. With the path axiom no path is circular, which spares work."""
+    """What all maps of one experience have in common.
+
+    In these maps each step arrives at a gateway that is seen there. With the path axiom no path is
+    circular, which saves work.
+    """
 
     def __init__(self, experience: Experience, path_axiom: bool = True):
         self.path_axiom = path_axiom
@@ -23,14 +28,14 @@ class Numbering:
         self.experience, self.turns = experience, experience.turns
         self.parted = experience.parted
         views = [sorted(view) for view in experience.views]
-        # Of each place: its gateways, and how many axes they lie on.
+        # For each place: its gateways, and the number of axes on which they lie.
         self.gateways = [
             [place * slots + slot for slot in view] for place, view in enumerate(views)
         ]
         self.axes = [
             len(view) - sum(1 for _ in experience.pairs(visit)) for visit, view in enumerate(views)
         ]
-        # The gateway before each one, counter-clockwise at its place; and straight across it.
+        # For each gateway: the next one counter-clockwise at its place, and the one opposite.
         self.before: dict[Number, Number] = {}
         self.opposite: dict[Number, Number] = {}
         for place, star in enumerate(self.gateways):
@@ -47,7 +52,7 @@ class Numbering:
                 self.opposite[place * slots + slot] = across
 
     def bearing(self, heading: Number) -> Number:
-        """The number of the slot of a heading."""
+        """The slot of a heading."""
         if heading >= 0:
             return heading
         place, slot = divmod(-1 - heading, self.slots)
@@ -55,8 +60,11 @@ class Numbering:
 
 
 class CompactMap:
-    """The map of a hypothesis, given by its dstate after each step (the paper, sections II and
-    III): ``places``, ``gateways``, and ``link``, which joins gateways both ways."""
+    """The map of a hypothesis, given by its dstate after each step.
+
+    It has ``places``, ``gateways``, and ``link``, which joins gateways in both directions (the
+    paper, sections II and III).
+    """
 
     __slots__ = ("_all", "link", "places")
 
@@ -87,32 +95,35 @@ class CompactMap:
         return [gateway for place in self.places for gateway in every[place]]
 
     def number_of_paths(self) -> int:
-        """How many paths there are. Where no path is circular, each link makes two paths one, so
-        there are as many as there are axes, less the links."""
+        """The number of paths.
+
+        Where no path is circular, each link joins two paths, so this is the number of axes minus
+        that of the links.
+        """
         if not self._all.path_axiom:
             return len(self.paths())
         axes = self._all.axes
         return sum([axes[place] for place in self.places]) - len(self.link) // 2
 
     def number_of_pending(self) -> int:
-        """How many gateways have no link."""
+        """The number of gateways that have no link."""
         every = self._all.gateways
         return sum([len(every[place]) for place in self.places]) - len(self.link)
 
     def genus(self, faces: int | None = None) -> int:
-        """The genus by the Euler-Poincare formula; the number of faces, if it is known, need not
-        be found again."""
+        """The genus by the Euler-Poincare formula; a known number of faces saves finding them."""
         faces = len(self.faces()) if faces is None else faces
         if self._all.parted:
             return self._genus_of_parts(faces)
         return (2 - len(self.places) + len(self.link) // 2 - faces) // 2
 
     def _genus_of_parts(self, faces: int) -> int:
-        """The same of a map that may have several components."""
+        """The genus of a map that may have several components."""
         slots = self._all.slots
         part = {place: place for place in self.places}
 
         def first(place: Number) -> Number:
+            """The representative of the component of a place."""
             while part[place] != place:
                 place = part[place]
             return place
@@ -127,7 +138,7 @@ class CompactMap:
         return (2 * parts - len(self.places) + len(self.link) // 2 - faces) // 2
 
     def faces(self) -> list[list[Number]]:
-        """Each face as the gateways its walk leaves by, as ``TopologicalMap.faces`` has them."""
+        """Each face as the gateways by which its walk leaves, as in ``TopologicalMap.faces``."""
         link, before = self.link, self._all.before
         faces, done = [], set()
         for start in sorted(link):
@@ -152,7 +163,7 @@ class CompactMap:
         for gateway in self.gateways():
             if gateway in done:
                 continue
-            # Back to where the path begins; one that is circular begins here.
+            # Go back to where the path begins; a circular path begins here.
             path = [gateway]
             ahead = opposite[gateway]
             while ahead in link and link[ahead] != gateway:

@@ -1,7 +1,7 @@
-"""The exceptions of a map to consistent boundaries, each with the paths that it is of.
+"""The exceptions of a map to consistent boundaries, with the names of the paths.
 
-A path is named by the first step that travels along it; one that no step travels, by a gateway of
-its only place, as in ``4.1``.
+A path is named by the first step that travels along it. A path that no step travels is named by a
+gateway of its only place, as in ``4.1``.
 """
 
 from collections.abc import Mapping, Sequence
@@ -13,13 +13,16 @@ from topomap.model.experience import DState, Experience
 from topomap.model.topology import TopologicalMap, gid
 from topomap.model.words import plural
 
-Name = int | str  # of a path
+Name = int | str  # the name of a path
 
 
 @dataclass(frozen=True)
 class NamedException:
-    """An exception: its ``kind`` (``meet twice``, ``place twice`` or ``both sides``), the names of
-    its ``paths``, and the ``places`` (docs/exceptions.md, "What an exception is")."""
+    """An exception to consistent boundaries (docs/exceptions.md, "What an exception is").
+
+    It has its ``kind`` (``meet twice``, ``place twice`` or ``both sides``), the names of its
+    ``paths``, and its ``places``.
+    """
 
     kind: str
     paths: tuple[Name, ...]
@@ -42,11 +45,11 @@ class NamedException:
 
 
 def exceptions_of(experience: Experience, at: Sequence[DState]) -> list[NamedException]:
-    """The exceptions of the map of a hypothesis, given by its dstate after each step."""
+    """Find the exceptions of the map of a hypothesis, given by its dstate after each step."""
     steps: dict[DState, int] = {}
     travels = zip(
         experience.turns, pairwise(at), strict=False
-    )  # of a beginning, there are more turns
+    )  # the beginning of an experience has more turns than steps
     for step, (turn, (before, arrival)) in enumerate(travels, 1):
         if turn is not None:
             steps.setdefault(experience.way_out(step, before), step)
@@ -55,8 +58,10 @@ def exceptions_of(experience: Experience, at: Sequence[DState]) -> list[NamedExc
 
 
 def named_exceptions(world: TopologicalMap, steps: Mapping[DState, int]) -> list[NamedException]:
-    """The exceptions of a map, of which it is known which step came first to each gateway that has
-    a link."""
+    """Find the exceptions of a map.
+
+    ``steps`` gives, for each gateway that has a link, the step that first came to it.
+    """
     found = list(world.exceptions())
     if not found:
         return []
@@ -75,6 +80,6 @@ def named_exceptions(world: TopologicalMap, steps: Mapping[DState, int]) -> list
 
 
 def _listed(names: Sequence[Name]) -> str:
-    """Such as "1, 3 and 4"."""
+    """List names, as in "1, 3 and 4"."""
     *first, last = map(str, names)
     return f"{', '.join(first)} and {last}" if first else last

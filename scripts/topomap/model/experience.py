@@ -1,4 +1,4 @@
-"""Experiences: what an exploration does and sees."""
+"""Experiences: what an agent does and sees during an exploration."""
 
 from collections.abc import Callable, Container, Iterable, Iterator
 from dataclasses import dataclass, fields
@@ -13,23 +13,23 @@ from topomap.runtime.limits import DRIFT, STRETCH
 
 DState = tuple[int, int]
 Misread = tuple[int, int | str]  # a step, and a gateway or a landmark that was missed or imagined
-MOST_SLOTS = 10**6  # sums of slots then stay below it
+MOST_SLOTS = 10**6  # sums of slots then stay below clingo's largest number
 MARKER = ("drop", "pick", "marker")
 Shift = tuple[int, int]  # how far a step moved the agent, in one fixed frame
 Thing = tuple[str, int, str]  # one of MARKER, a step, and the name of a marker
 Visits = tuple[int, int]  # two visits, each named by its step, the earlier one first
-Slots = tuple[int, int]  # of two gateways of one visit, the lower one first
+Slots = tuple[int, int]  # the slots of two gateways of one visit, the lower one first
 
 
 @dataclass(frozen=True)
 class Step:
-    """What is told of one step; while it is being told, not all is known as yet.
+    """What is told of one step, which may not be known completely while it is being told.
 
-    ``turn`` is None of step 0, where the exploration begins, and of a step that is no travel: a
-    new log (``start``), or a second look (``look``). ``marks`` are those of MARKER that hold after
-    it, and ``things`` what is done with markers that have names. ``same`` and ``apart`` are the
-    earlier steps after which the agent was at this place, or at another one. The rest is as in
-    ``Experience``.
+    ``turn`` is None for step 0, where the exploration begins, and for a step that is not a travel:
+    the beginning of a new log (``start``), or a second look (``look``). ``marks`` are those of
+    MARKER that hold after the step, and ``things`` is what is done with markers that have names.
+    ``same`` and ``apart`` are the earlier steps after which the agent was at this place, or at
+    another one. The other attributes are as in ``Experience``.
     """
 
     turn: int | None = None
@@ -44,37 +44,38 @@ class Step:
     start: bool = False
     look: bool = False
     things: frozenset[tuple[str, str]] = frozenset()  # one of MARKER, and the name
-    straight: frozenset[Slots] | None = None  # None where no pairs of gateways are told
+    straight: frozenset[Slots] | None = None  # None if no pairs of gateways are told
 
 
 @dataclass(frozen=True, init=False)
 class Experience:
     """An exploration of ``len(turns)`` steps (semantics: "Experience"; the paper, section II).
 
-    ``views[t]`` and ``landmarks[t]``, t = 0..n, are what is seen after step t: slots
+    ``views[t]`` and ``landmarks[t]``, for t = 0..n, are what is seen after step t: slots, counted
     clockwise from the gateway where the agent stands, and landmarks as terms of clingo, such as
-    ``"pub"``; ``turns[t - 1]`` is the turn of step t, in slots clockwise. ``drops``, ``picks``
-    and ``markers`` are the steps after which the marker is put down, taken up and seen. Lists
-    will do: ``Experience(4, [[0], [0, 1], [0]], [0, 1])``. What is kept is plain: numbers are
+    ``"pub"``. ``turns[t - 1]`` is the turn of step t, in slots clockwise. ``drops``, ``picks`` and
+    ``markers`` are the steps after which the marker is put down, taken up and seen. Lists are
+    accepted, too: ``Experience(4, [[0], [0, 1], [0]], [0, 1])``. What is kept is plain: numbers are
     ``int``, and landmarks are spelt as clingo spells them.
 
-    What is known besides views (semantics: "A compass", "Odometry", "Asserted, and ruled out"):
-    ``compass[t]`` is the compass slot to which the gateway stood at after step t points;
-    ``shifts[t - 1]`` how far step t moved the agent, and ``lengths[t - 1]`` how long it was. Each
-    is None where it is not told, and the whole is empty where it is told of no step. ``same`` and
-    ``apart`` hold pairs of visits that are known to be of one place, or of two. Shifts may be wrong
-    by ``drift`` percent of the way, and lengths by ``stretch`` percent. ``assumed`` holds what else
-    is taken for granted (``topomap.assume``): the terms of statements, each with whether it holds.
+    More can be known besides views (semantics: "A compass", "Odometry", "Asserted, and ruled out").
+    ``compass[t]`` is the compass slot to which the gateway points where the agent stands after step
+    t. ``shifts[t - 1]`` is how far step t moved the agent, and ``lengths[t - 1]`` is how long it
+    was. An entry is None for a step of which it is not told, and the whole is empty if it is told
+    of no step. ``same`` and ``apart`` are pairs of visits that are known to be of one place, or of
+    two. Shifts may be wrong by ``drift`` percent of the way, and lengths by ``stretch`` percent.
+    ``assumed`` is what else is taken for granted (``topomap.assume``): the terms of statements,
+    each with whether it holds.
 
-    Not each step is a travel (semantics: "Several logs, a second look"). After those of ``starts``
-    a new log of the same world begins, and after those of ``looks`` the agent looks a second time;
-    the turn of both is None. ``things`` are what is done with markers that have names, beside the
-    one that has none: ``("drop", 4, "coin")``.
+    Not every step is a travel (semantics: "Several logs, a second look"). A new log of the same
+    world begins at the steps ``starts``, and the agent looks a second time at the steps ``looks``;
+    the turn of both is None. ``things`` is what is done with markers that have names, besides the
+    marker that has none: ``("drop", 4, "coin")``.
 
-    ``straight[t]`` holds the pairs of gateways, as slots of ``views[t]``, that are on one path
-    (semantics: "Which gateways are on one path"); a gateway that is in none ends its path. If
-    ``straight`` is empty, opposite gateways are on one path. Bearings may be wrong by
-    ``tolerance`` slots (semantics: "Bearings that are not exact").
+    ``straight[t]`` has the pairs of gateways, as slots of ``views[t]``, that are on one path
+    (semantics: "Which gateways are on one path"). A gateway that is in no pair ends its path. If
+    ``straight`` is empty, opposite gateways are on one path. Bearings may be wrong by ``tolerance``
+    slots (semantics: "Bearings that are not exact").
     """
 
     slots: int
@@ -122,39 +123,46 @@ class Experience:
         straight: Iterable[Iterable[Slots]] = (),
         tolerance: int = 0,
     ):
-        """What was seen and done. Whether it can be so is told when it is first used: by
-        InputError, with the step, as for a file.
+        """Note what was seen and done.
+
+        Whether it is possible is checked when the experience is first used. An InputError then
+        names the step, as it does for a file.
 
         Parameters:
-            slots: the number of directions at each place.
-            views: the slots that are seen after each step, from 0.
-            turns: the turn of each step, from 1, in slots clockwise.
-            landmarks: the landmarks that are seen after each step, from 0; by default none.
-            drops, picks, markers: the steps after which the marker is put down, taken up, seen; of
-                a marker that has a name, such as ``(4, "coin")``, the step and the name.
-            compass: the compass slot of the gateway stood at after each step, from 0, or None; by
-                default none is told.
-            shifts: how far each step, from 1, moved the agent, as (x, y) in whole numbers of any
-                unit, or None; by default none is told.
-            lengths: how long each step was, in whole units, or None; by default none is told.
-            same, apart: pairs of steps after which the agent was at one place, or at two.
-            drift, stretch: how far shifts and lengths may be wrong, in percent.
-            assumed: what ``topomap.assume`` has added: statements, as terms that
+            slots: The number of directions at each place.
+            views: The slots that are seen after each step, from 0.
+            turns: The turn of each step, from 1, in slots clockwise.
+            landmarks: The landmarks that are seen after each step, from 0; none by default.
+            drops: The steps after which the marker is put down; for a marker that has a name, pairs
+                such as ``(4, "coin")`` of the step and the name.
+            picks: The steps after which the marker is taken up, or such pairs.
+            markers: The steps after which the marker is seen, or such pairs.
+            compass: The compass slot of the gateway where the agent stands after each step, from 0,
+                or None; by default it is told of no step.
+            shifts: How far each step, from 1, moved the agent, as (x, y) in whole numbers of any
+                unit, or None; by default it is told of no step.
+            lengths: How long each step was, in whole numbers of any unit, or None; by default it is
+                told of no step.
+            same: Pairs of steps after which the agent was at one place.
+            apart: Pairs of steps after which the agent was at two places.
+            drift: By how many percent of the way shifts may be wrong.
+            stretch: By how many percent lengths of one way may differ.
+            assumed: What ``topomap.assume`` has added: statements, as terms that
                 ``encodings/query.lp`` knows, each with whether it holds.
-            starts: the steps, from 1, at which a new log of the same world begins.
-            looks: the steps, from 1, that are no travel but a second look. The turn of a step of
-                either kind is None.
-            things: what is done with markers that have names, once more, as it is kept:
-                ``("drop", step, name)``, or ``"pick"``, ``"marker"``; a name is a term of clingo.
-            straight: the pairs of slots whose gateways are on one path, at each visit, from 0; by
+            starts: The steps, from 1, at which a new log of the same world begins. Their turn is
+                None.
+            looks: The steps, from 1, that are not a travel but a second look. Their turn is None.
+            things: What is done with markers that have names, in the form in which it is kept:
+                ``("drop", step, name)``, or ``"pick"`` or ``"marker"``; a name is a term of clingo.
+            straight: The pairs of slots whose gateways are on one path, for each visit, from 0; by
                 default those of opposite gateways.
-            tolerance: by how many slots bearings may be wrong.
+            tolerance: By how many slots bearings may be wrong.
 
         Raises:
-            ValueError: there is not one view more than turns, or not as many sets of landmarks;
-                a slot or a step that is no whole number, a step that there is not, a landmark
-                that is not a ground term of clingo.
-            TypeError: something else where a collection is wanted, such as a text.
+            ValueError: The number of views is not one more than that of turns, or that of the sets
+                of landmarks is another one; a slot or a step is not a whole number; there is no
+                such step; or a landmark is not a ground term of clingo.
+            TypeError: Something else, such as a text, is given where a collection is wanted.
         """
         seen = tuple(
             frozenset(view if _is_plain(view, int) else _slots(f"views[{step}]", view))
@@ -213,12 +221,22 @@ class Experience:
 
     @property
     def steps(self) -> int:
-        """How many steps there are; after step 0, where it starts, the agent has seen the first
-        view, but has not moved."""
+        """The number of steps.
+
+        At step 0, where the exploration starts, the agent has seen the first view but has not
+        moved.
+        """
         return len(self.turns)
 
     def cut(self, horizon: int) -> "Experience":
-        """The experience up to and including step ``horizon``."""
+        """Cut the experience after a step.
+
+        Parameters:
+            horizon: The last step to keep.
+
+        Returns:
+            The beginning of the experience.
+        """
         marks = {
             name: frozenset(step for step in getattr(self, name) if step <= horizon)
             for name in ("drops", "picks", "markers", "starts", "looks")
@@ -247,8 +265,16 @@ class Experience:
         stretch: int | None = None,
         tolerance: int | None = None,
     ) -> "Experience":
-        """The same experience, where shifts may be wrong by ``drift`` percent, lengths by
-        ``stretch`` percent, and bearings by ``tolerance`` slots (None: as before)."""
+        """Say by how much what was measured may be wrong.
+
+        Parameters:
+            drift: By how many percent of the way shifts may be wrong; None to leave it as it is.
+            stretch: By how many percent lengths of one way may differ; None to leave it as it is.
+            tolerance: By how many slots bearings may be wrong; None to leave it as it is.
+
+        Returns:
+            The same experience with these limits.
+        """
         changed = {
             "drift": whole_if_given("drift", drift, 0),
             "stretch": whole_if_given("stretch", stretch, 0),
@@ -257,21 +283,42 @@ class Experience:
         return self._but(**{key: value for key, value in changed.items() if value is not None})
 
     def knowing(self, same: Iterable[Visits] = (), apart: Iterable[Visits] = ()) -> "Experience":
-        """The same experience, where more pairs of visits are known to be of one place, or of
-        two."""
+        """Add pairs of visits that are known to be of one place, or of two.
+
+        Parameters:
+            same: Pairs of steps after which the agent was at one place.
+            apart: Pairs of steps after which the agent was at two places.
+
+        Returns:
+            The same experience with what is known.
+        """
         return self._but(
             same=self.same | _pairs("same", same, self.steps),
             apart=self.apart | _pairs("apart", apart, self.steps),
         )
 
     def granted(self, term: str, holds: bool) -> "Experience":
-        """The same experience, of which it is taken for granted that a statement of
-        ``encodings/query.lp`` holds, or does not."""
+        """Take a statement for granted, or its opposite.
+
+        Parameters:
+            term: The statement, as a term of ``encodings/query.lp``.
+            holds: Whether it holds.
+
+        Returns:
+            The same experience with the assumption.
+        """
         return self._but(assumed=self.assumed | {(term, holds)})
 
     def assumptions(self, as_reasons: bool = False) -> str:
-        """What is taken for granted, as facts and rules beside ``encodings/query.lp``; as reasons
-        that may be given up, ``broken(assumed(N))`` is of statement N of ``sorted(assumed)``."""
+        """The assumptions as facts and rules, to be used with ``encodings/query.lp``.
+
+        Parameters:
+            as_reasons: Whether the assumptions are reasons that may be given up;
+                ``broken(assumed(N))`` then stands for statement N of ``sorted(assumed)``.
+
+        Returns:
+            The text of the rules.
+        """
         return "".join(
             f"ask({term}). {f'broken(assumed({number})) ' * as_reasons}"
             f":- {'not ' * holds}holds({term}).\n"
@@ -279,19 +326,34 @@ class Experience:
         )
 
     def constants(self) -> list[str]:
-        """The options of clingo that tell how far shifts, lengths and bearings may be wrong."""
+        """Tell how far shifts, lengths and bearings may be wrong.
+
+        Returns:
+            The options of clingo that say so.
+        """
         told = [f"drift={self.drift}"] * bool(self.shifts)
         told += [f"stretch={self.stretch}"] * bool(self.lengths)
-        # No two slots are further apart than all of them.
+        # Two slots cannot be further apart than the number of slots.
         told += [f"tolerance={min(self.tolerance, self.slots)}"] * bool(self.tolerance)
         return [option for one in told for option in ("-c", one)]
 
     def compass_told(self) -> int:
-        """Of how many visits the compass is told."""
+        """Count the visits of which the compass is told.
+
+        Returns:
+            Their number.
+        """
         return sum(slot is not None for slot in self.compass)
 
     def then(self, step: Step) -> "Experience":
-        """The experience with one more step, of which the caller has seen to it that it can be."""
+        """Add a step, whose possibility the caller has checked.
+
+        Parameters:
+            step: The step.
+
+        Returns:
+            The experience with one more step.
+        """
         last = self.steps + 1
         drops, picks, markers = (
             steps | {last} if name in step.marks else steps
@@ -316,8 +378,10 @@ class Experience:
         )
 
     def _but(self, **changed: object) -> "Experience":
-        """The same experience but for what is changed, which is known to be plain: it is not
-        checked again, as this is done for each map that is told."""
+        """Copy the experience with changes that are known to be plain.
+
+        They are not checked again, because this is done for each map that is written.
+        """
         made = object.__new__(Experience)
         for one in fields(self):
             object.__setattr__(made, one.name, changed.get(one.name, getattr(self, one.name)))
@@ -325,16 +389,27 @@ class Experience:
 
     @property
     def parted(self) -> bool:
-        """Whether there are steps that are no travel."""
+        """Whether there are steps that are not a travel."""
         return bool(self.starts or self.looks)
 
     def names(self) -> list[str | None]:
-        """The markers: None for the one that has no name, and the names of the others."""
+        """List the markers.
+
+        Returns:
+            None for the marker that has no name, and the names of the others.
+        """
         alone: list[str | None] = [None] * bool(self.drops or self.picks or self.markers)
         return alone + sorted({name for _, _, name in self.things})
 
     def marks_of(self, name: str | None) -> tuple[frozenset[int], ...]:
-        """The steps after which a marker is put down, taken up and seen."""
+        """The steps after which a marker is put down, taken up and seen.
+
+        Parameters:
+            name: The name of the marker; None for the one that has none.
+
+        Returns:
+            Three sets of steps, in this order.
+        """
         if name is None:
             return self.drops, self.picks, self.markers
         return tuple(
@@ -343,8 +418,13 @@ class Experience:
         )
 
     def put_down(self) -> dict[str | None, int]:
-        """The markers that lie somewhere after the last step, each with the step after which it was
-        put down. (Taking up comes before putting down.)"""
+        """Find the markers that lie somewhere after the last step.
+
+        (After one step, a marker is taken up before it is put down.)
+
+        Returns:
+            For each of these markers the step after which it was put down.
+        """
         told = {}
         for name in self.names():
             drops, picks, _ = self.marks_of(name)
@@ -354,9 +434,18 @@ class Experience:
         return told
 
     def marker(self, name: str | None = None) -> tuple[tuple[int, bool] | None, ...]:
-        """For each step at whose end a marker lies somewhere: after which step it was put
-        down, and whether it is seen. (Whoever takes it up sees it. After one step it is taken up
-        before it is put down.)"""
+        """Tell what is known of a marker after each step.
+
+        (Whoever takes a marker up sees it. After one step, a marker is taken up before it is put
+        down.)
+
+        Parameters:
+            name: The name of the marker; None for the one that has none.
+
+        Returns:
+            For each step after which the marker lies somewhere, the step after which it was put
+            down, and whether it is seen; None for the other steps.
+        """
         drops, picks, markers = self.marks_of(name)
         told: list[tuple[int, bool] | None] = []
         down = None
@@ -368,8 +457,12 @@ class Experience:
         return tuple(told)
 
     def lying(self) -> tuple[tuple[int, int, bool, str | None], ...]:
-        """What is told of markers that lie somewhere: the step, the one after which it was put
-        down, whether it is seen, and its name."""
+        """Tell what is known of markers that lie somewhere.
+
+        Returns:
+            For each marker and step, the step, the one after which it was put down, whether it is
+            seen, and its name.
+        """
         return tuple(
             (step, down, seen, name)
             for name in self.names()
@@ -379,8 +472,14 @@ class Experience:
         )
 
     def corrected(self, misread: Iterable[Misread]) -> "Experience":
-        """The experience without its misreadings: what was missed is seen, and what was imagined
-        is not."""
+        """Take back misreadings.
+
+        Parameters:
+            misread: The misreadings.
+
+        Returns:
+            The experience in which what was missed is seen, and what was imagined is not.
+        """
         views, landmarks = list(self.views), list(self.landmarks)
         for step, what in misread:
             if isinstance(what, int):
@@ -390,13 +489,23 @@ class Experience:
         return self._but(views=tuple(views), landmarks=tuple(landmarks))
 
     def misled(self) -> list[int]:
-        """The steps after which the agent stands at no gateway, or leaves by none, according to
-        what it sees there."""
+        """Find the steps that contradict the view.
+
+        After these steps the agent stands at no gateway, or leaves by none, according to what it
+        sees.
+
+        Returns:
+            The steps.
+        """
         needs = [{0} if turn is None else {0, turn} for turn in self.turns] + [{0}]
         return [step for step, need in enumerate(needs) if not need <= self.views[step]]
 
     def facts(self) -> str:
-        """The experience as facts, one line a step."""
+        """Write the experience as facts of an instance.
+
+        Returns:
+            The facts, with one line for each step.
+        """
         pairs: dict[int, list[tuple[str, int]]] = {}
         for name in ("same", "apart"):
             for one, other in sorted(getattr(self, name)):
@@ -409,8 +518,15 @@ class Experience:
         return "\n".join(lines) + "\n"
 
     def facts_of(self, step: int, number: int | None = None) -> list[str]:
-        """The facts that are told of a step, but for pairs of steps; in these it has this number,
-        if one is given."""
+        """The facts that are told of a step, apart from pairs of steps.
+
+        Parameters:
+            step: The step.
+            number: The number of the step in the facts, if it is another one.
+
+        Returns:
+            The facts, as texts.
+        """
         named = step if number is None else number
         line = []
         if step:
@@ -429,15 +545,24 @@ class Experience:
         return line
 
     def _pairs_told(self, step: int) -> list[Slots]:
-        """The pairs of gateways that are told of a visit. If there are none at all, it is told of a
-        gateway of step 0 that it ends its path, so that opposite gateways are not taken to be on
-        one."""
+        """The facts about the pairs of gateways that are told of a visit.
+
+        If no gateways are on one path at any visit, one fact says of a gateway of step 0 that it
+        ends its path. Without this fact, opposite gateways would be taken to be on one path.
+        """
         if not self.straight or step or any(self.straight):
             return sorted(self.straight[step]) if self.straight else []
         return [(slot, slot) for slot in sorted(self.views[0])[:1]]
 
     def measured(self, step: int) -> Iterator[tuple[str, tuple[int, ...]]]:
-        """What is measured of a step: the name of the fact, and its numbers but for the step."""
+        """What is measured of a step.
+
+        Parameters:
+            step: The step.
+
+        Returns:
+            For each measurement the name of the fact, and its numbers without the step.
+        """
         if self.compass and (slot := self.compass[step]) is not None:
             yield "compass", (slot,)
         if step and self.shifts and (shift := self.shifts[step - 1]) is not None:
@@ -446,7 +571,14 @@ class Experience:
             yield "length", (length,)
 
     def map_of(self, at: tuple[DState, ...]) -> TopologicalMap:
-        """The map of a hypothesis, given the dstate after each step (``at/3``)."""
+        """Make the map of a hypothesis.
+
+        Parameters:
+            at: The dstate after each step (``at/3``).
+
+        Returns:
+            The map.
+        """
         stars = {place: self.views[place] for place, _ in at}
         links: dict[Gateway, Gateway] = {}
         for step, (before, arrival) in enumerate(pairwise(at), 1):
@@ -457,8 +589,15 @@ class Experience:
         return TopologicalMap(self.slots, stars, links, landmarks, self.across(stars))
 
     def across(self, places: Iterable[int]) -> dict[Gateway, Gateway] | None:
-        """The other gateway on the path of each gateway that is not an end of it, at these places;
-        None if opposite gateways are on one path."""
+        """Tell for gateways which other gateway of their place is on the same path.
+
+        Parameters:
+            places: The places, each as the step of its first visit.
+
+        Returns:
+            The other gateway of each gateway that does not end its path; None if opposite gateways
+            are on one path.
+        """
         if not self.straight:
             return None
         return {
@@ -469,37 +608,79 @@ class Experience:
         }
 
     def goes_straight(self, step: int) -> bool:
-        """Whether a travel leaves by the gateway that is on one path with that of arrival."""
+        """Tell whether a travel leaves on the path on which the agent arrived.
+
+        Parameters:
+            step: The step of the travel.
+
+        Returns:
+            Whether the gateway by which it leaves and that of the arrival are on one path.
+        """
         turn = self.turns[step - 1]
         if not self.straight:
             return turn == self.slots // 2
         return bool(turn) and (0, turn) in self.straight[step - 1]
 
     def way_out(self, step: int, before: DState) -> DState:
-        """The gateway by which a travel leaves the dstate where the agent stood before it."""
+        """The gateway by which a travel leaves.
+
+        Parameters:
+            step: The step of the travel.
+            before: The dstate of the agent before the step.
+
+        Returns:
+            The gateway.
+        """
         turn, (place, slot) = self.turns[step - 1], before
         assert turn is not None
         return place, self.slot_at(place, slot, step - 1, turn)
 
     def slot_at(self, place: int, slot: int, visit: int, seen: int) -> int:
-        """The slot of the gateway of a place that a visit sees in the slot ``seen``, if it stands
-        at the place's gateway ``slot``; ``place`` may be any other visit of the place, too, and
-        slots are then those of that visit. Where bearings are not exact, the gateways of both are
-        numbered clockwise."""
+        """Translate a slot of a visit into a slot of its place.
+
+        Parameters:
+            place: The place, or any other visit of it; slots are then those of that visit.
+            slot: The slot of the place's gateway where the visit stands.
+            visit: The visit, as its step.
+            seen: The slot of a gateway, as the visit sees it.
+
+        Returns:
+            The slot of that gateway at the place. If bearings are not exact, the gateways of both
+            are numbered clockwise, and correspond by these numbers.
+        """
         if not self.tolerance:
             return (slot + seen) % self.slots
         star, view = sorted(self.views[place]), sorted(self.views[visit])
         return star[(star.index(slot) + view.index(seen)) % len(star)]
 
     def alike(self, place: int, slot: int, visit: int) -> bool:
-        """Whether what a visit sees is what is seen from gateway ``slot`` of a place: as many
-        gateways, within the tolerance, those of the same pairs on one path, and the same
-        landmarks."""
+        """Tell whether a visit sees what is seen from a gateway of a place.
+
+        It sees as many gateways, within the tolerance, with the same pairs on one path, and the
+        same landmarks.
+
+        Parameters:
+            place: The place.
+            slot: The slot of the gateway.
+            visit: The visit, as its step.
+
+        Returns:
+            Whether the visit can be of that place, standing at that gateway.
+        """
         same = self.landmarks[place] == self.landmarks[visit]
         return same and self.looks_alike(place, slot, visit)
 
     def looks_alike(self, place: int, slot: int, visit: int) -> bool:
-        """The same, whatever the landmarks."""
+        """Tell the same as ``alike``, whatever the landmarks are.
+
+        Parameters:
+            place: The place.
+            slot: The slot of the gateway.
+            visit: The visit, as its step.
+
+        Returns:
+            Whether the gateways of the visit can be those of the place.
+        """
         star, view = self.views[place], self.views[visit]
         if len(star) != len(view):
             return False
@@ -513,7 +694,14 @@ class Experience:
         return here == {*map(frozenset, self.pairs(place))}
 
     def pairs(self, visit: int) -> Iterable[Slots]:
-        """The pairs of gateways of a visit that are on one path."""
+        """The pairs of gateways of a visit that are on one path.
+
+        Parameters:
+            visit: The visit, as its step.
+
+        Returns:
+            The pairs of slots.
+        """
         if self.straight:
             return self.straight[visit]
         half, view = self.slots // 2, self.views[visit]
@@ -524,12 +712,12 @@ T = TypeVar("T")
 
 
 def _told(values: tuple[T | None, ...]) -> tuple[T | None, ...]:
-    """The values, or nothing if none is told."""
+    """Keep the values, or nothing if none of them is told."""
     return values if any(value is not None for value in values) else ()
 
 
 def _longer(values: tuple[T | None, ...], many: int, more: T | None) -> tuple[T | None, ...]:
-    """So many values, which are empty if none is told, and one more."""
+    """Extend values, which are empty if none is told, to a number of steps and one value more."""
     if not values and more is None:
         return ()
     return (*(values or (None,) * many), more)
@@ -538,7 +726,7 @@ def _longer(values: tuple[T | None, ...], many: int, more: T | None) -> tuple[T 
 def _each(
     name: str, given: Iterable[T | None], many: int, plain: Callable[[str, T], T]
 ) -> tuple[T | None, ...]:
-    """A value or None for each of so many steps; nothing if none is told."""
+    """Check that there is a value or None for each step; return nothing if none is told."""
     values = tuple(
         None if value is None else plain(f"{name}[{number}]", value)
         for number, value in enumerate(collection(name, given))
@@ -554,7 +742,7 @@ def _shift(name: str, given: Shift) -> Shift:
 
 
 def _pairs(name: str, given: Iterable[Visits], last: int) -> frozenset[Visits]:
-    """Pairs of visits, but for what says that a visit is of its own place."""
+    """Check pairs of visits, and leave out pairs of a visit and itself."""
     pairs = {_visits(name, pair, last) for pair in collection(name, given)}
     alone = {pair for pair in pairs if pair[0] == pair[1]}
     if alone and name == "apart":
@@ -563,7 +751,7 @@ def _pairs(name: str, given: Iterable[Visits], last: int) -> frozenset[Visits]:
 
 
 def _visits(name: str, given: Visits, last: int) -> Visits:
-    """Two visits, the earlier one first."""
+    """Check two visits, and put the earlier one first."""
     one, other = (whole(f"{name}: step", step, 0, last) for step in _two(name, given, "two steps"))
     return min(one, other), max(one, other)
 
@@ -576,12 +764,12 @@ def _two(name: str, given: Iterable[int], what: str) -> tuple[int, int]:
 
 
 def _is_plain(given: object, *kinds: type) -> bool:
-    """Whether something is a frozen set of these types and no others already: most are."""
+    """Tell whether something is already a frozen set of these types, as most things are."""
     return type(given) is frozenset and {*map(type, given)} <= {*kinds}
 
 
 def _turns(given: Iterable[int | None]) -> tuple[int | None, ...]:
-    """Turns of any type of whole number, as int."""
+    """Convert turns of any type of whole number to int."""
     return tuple(
         turn if turn is None or type(turn) is int else integer("turns: slot", turn)
         for turn in collection("turns", given)
@@ -589,7 +777,7 @@ def _turns(given: Iterable[int | None]) -> tuple[int | None, ...]:
 
 
 def _assumed(given: Iterable[tuple[str, bool]]) -> frozenset[tuple[str, bool]]:
-    """Statements that are taken for granted, each a term, and whether it holds."""
+    """Check assumptions: each is a term, and whether it holds."""
     told = set()
     for one in collection("assumed", given):
         if isinstance(one, str) or len(one) != 2 or not isinstance(one[1], bool):
@@ -600,14 +788,14 @@ def _assumed(given: Iterable[tuple[str, bool]]) -> frozenset[tuple[str, bool]]:
 
 
 def _straight(given: Iterable[Iterable[Slots]], many: int) -> tuple[frozenset[Slots], ...]:
-    """Of each visit the pairs of slots that are on one path, the lower one first."""
+    """Check the pairs of slots on one path of each visit, and put the lower slot first."""
     told = []
     for step, of in enumerate(collection("straight", given)):
         name = f"straight[{step}]"
         pairs = set()
         for pair in collection(name, of):
             one, other = (integer(f"{name}: slot", slot) for slot in _two(name, pair, "two slots"))
-            if one != other:  # else it is told of a gateway that it ends its path
+            if one != other:  # an equal pair says that the gateway ends its path
                 pairs.add((min(one, other), max(one, other)))
         told.append(frozenset(pairs))
     if told and len(told) != many:
@@ -616,7 +804,7 @@ def _straight(given: Iterable[Iterable[Slots]], many: int) -> tuple[frozenset[Sl
 
 
 def _thing(given: Thing, last: int) -> Thing:
-    """What is done with a marker that has a name."""
+    """Check what is done with a marker that has a name."""
     if isinstance(given, str) or len(given) != 3 or given[0] not in MARKER:
         raise ValueError(f"things: {shown(given)} is not such as ('drop', 4, 'coin')")
     kind, step, name = given
@@ -625,7 +813,7 @@ def _thing(given: Thing, last: int) -> Thing:
 
 
 def _slots(name: str, given: Iterable[int]) -> list[int]:
-    """Slots of any type of whole number, as int."""
+    """Convert slots of any type of whole number to int."""
     return [
         slot if type(slot) is int else integer(f"{name}: slot", slot)
         for slot in collection(name, given)
@@ -633,7 +821,7 @@ def _slots(name: str, given: Iterable[int]) -> list[int]:
 
 
 def _terms(name: str, given: Iterable[str]) -> frozenset[str]:
-    """Landmarks, each spelt as clingo spells it."""
+    """Spell landmarks as clingo spells them."""
     terms = set()
     for term in collection(name, given):
         if not isinstance(term, str):
@@ -652,11 +840,12 @@ def observe(
     drops: Iterable[int] = (),
     picks: Iterable[int] = (),
 ) -> tuple[Experience, tuple[DState, ...]]:
-    """What is seen from ``start`` (the gateway of the agent) along ``route``, the absolute
-    slots by which places are left; and the true hypothesis, as ``at/3`` would name it.
+    """Explore a world: find out what is seen along a route, and the true hypothesis.
 
-    The marker is put down after those of the steps ``drops`` when it is in hand, and taken up
-    after those of ``picks`` when it is seen."""
+    The agent starts at the gateway ``start``. The route has the absolute slots by which it leaves
+    the places. The hypothesis is what ``at/3`` would name. The marker is put down after the steps
+    ``drops`` if the agent has it, and taken up after the steps ``picks`` if the agent sees it.
+    """
     dstates = [start]
     turns = []
     for slot in route:
@@ -678,7 +867,7 @@ def observe(
 
 
 def _pairs_seen(world: TopologicalMap, stood: Gateway) -> set[Slots]:
-    """Which gateways of a place are on one path, in slots clockwise of the one stood at."""
+    """Tell which gateways of a place are on one path, in slots clockwise of the agent's gateway."""
     place, at = stood
     pairs = set()
     for slot in world.stars[place]:
@@ -696,7 +885,7 @@ def _marker(
     put: set[int] = set()
     taken: set[int] = set()
     seen: set[int] = set()
-    lies: list[Place] = []  # where
+    lies: list[Place] = []  # the place where the marker lies, if it does
     for step, (place, _) in enumerate(dstates):
         if place in lies:
             seen.add(step)
@@ -710,8 +899,10 @@ def _marker(
 
 
 def marker_fault(marks: Container[str], out: bool, name: str | None = None) -> str | None:
-    """What is impossible in what is done with a marker after a step; ``out`` tells whether it
-    lies somewhere before that."""
+    """Say what is impossible in what is done with a marker after a step.
+
+    ``out`` tells whether the marker lies somewhere before that.
+    """
     marker = "the marker" if name is None else f"the marker {printable(name)}"
     if "pick" in marks and not out:
         return f"{marker} is taken up, but lies nowhere"
@@ -723,5 +914,5 @@ def marker_fault(marks: Container[str], out: bool, name: str | None = None) -> s
 
 
 def marker_out(marks: Container[str], out: bool) -> bool:
-    """Whether the marker lies somewhere after that."""
+    """Tell whether the marker lies somewhere after what is done with it."""
     return "drop" in marks or (out and "pick" not in marks)

@@ -1,4 +1,4 @@
-"""The facts of instance files: experiences are read from them, and their faults told.
+"""The facts of instance files: they are made into experiences, and their faults are found.
 
 An instance file is data: ground facts ``slots/1``, ``view/2``, ``turn/2``, ``landmark/2``,
 ``start/1``, ``look/1``, ``drop/1``, ``pick/1``, ``marker/1`` (these three also with the name of a
@@ -6,7 +6,6 @@ marker), ``compass/2``, ``shift/3``, ``length/2``, ``straight/3``, ``same/2`` an
 ``encodings/topomap.lp``), and comments. Anything else is refused.
 """
 
-import difflib
 import itertools
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -29,6 +28,7 @@ from topomap.model.terms import STRING, cut_short, ground, quoted
 from topomap.runtime import files
 from topomap.runtime.errors import InputError
 from topomap.runtime.limits import DRIFT, LARGEST, STRETCH
+from topomap.runtime.near import nearest
 
 SIGNATURES = {  # the facts of an instance
     "slots": "slots(K)",
@@ -46,15 +46,15 @@ SIGNATURES = {  # the facts of an instance
     "look": "look(T)",
 }
 FORMS = {name: form.count(",") + 1 for name, form in SIGNATURES.items()}
-WHOLE = {  # of the other facts, the steps are such numbers
+WHOLE = {  # messages; in the other facts, steps are the whole numbers
     "slots": "K is a whole number",
     **dict.fromkeys(("view", "turn", "compass"), "a step and a slot are whole numbers"),
     "straight": "a step and two slots are whole numbers",
     "shift": "a step, and how far it moved, are whole numbers",
     "length": "a step and its length are whole numbers",
 }
-NAMED = {name: f"{name}(T,M)" for name in MARKER}  # of markers that have names
-RESTS = ("start", "look")  # steps that are no travel
+NAMED = {name: f"{name}(T,M)" for name in MARKER}  # the forms for markers that have names
+RESTS = ("start", "look")  # the kinds of steps that are not a travel
 PAIRS = ("same", "apart")
 HINT = " (misread? solve --noise allows for that)"
 
@@ -66,10 +66,16 @@ def read(
     stretch: int | None = None,
     tolerance: int | None = None,
 ) -> Experience:
-    """The experience in an instance file; a ``noisy`` one may turn to gateways that were not
-    seen, and views may lack slot 0; shifts and lengths may be wrong by ``drift`` and ``stretch``
-    percent, and bearings by ``tolerance`` slots. Raises InputError, one line, on bad input: the
-    first of the faults that ``Facts.faults`` finds."""
+    """Read the experience in an instance file.
+
+    A ``noisy`` one may turn to gateways that were not seen, and its views may lack slot 0. Shifts
+    and lengths may be wrong by ``drift`` and ``stretch`` percent, and bearings by ``tolerance``
+    slots.
+
+    Raises:
+        InputError: The file cannot be read, or has a fault. The message is one line, about the
+            first fault that ``Facts.faults`` finds.
+    """
     return parse(files.read_text(path), str(path), noisy, drift, stretch, tolerance)
 
 
@@ -81,7 +87,7 @@ def parse(
     stretch: int | None = None,
     tolerance: int | None = None,
 ) -> Experience:
-    """The experience in the text of an instance; ``source`` names it in errors."""
+    """Make the experience of the text of an instance, which ``source`` names in errors."""
     facts = Facts(
         drift=DRIFT if drift is None else drift, stretch=STRETCH if stretch is None else stretch
     )
@@ -97,9 +103,12 @@ def parse(
 
 @dataclass(frozen=True)
 class Fault:
-    """What is wrong with an instance: ``said`` in words, the ``line`` that shows it (counted
-    from 1; None if no line does), and the ``step`` if it is of one. A fault that ``lacks``
-    something might go when a fact that could not be read is put right."""
+    """What is wrong with an instance.
+
+    It has the fault in words (``said``), the ``line`` that shows it (counted from 1; None if no
+    line does), and the ``step``, if it is of one. A fault that ``lacks`` something may disappear
+    when a fact that could not be read is corrected.
+    """
 
     said: str
     line: int | None = None
@@ -107,7 +116,7 @@ class Fault:
     lacks: bool = False
 
     def of(self, source: str) -> str:
-        """The fault in one line: file, line, step and what is wrong."""
+        """Tell the fault in one line: file, line, step and what is wrong."""
         line = "" if self.line is None else f":{self.line}"
         step = "" if self.step is None else f" step {self.step}:"
         return f"{source}{line}:{step} {self.said}"
@@ -117,14 +126,13 @@ class Fault:
 class Facts:
     """The facts of an instance, each with the line in which it stands first.
 
-    ``views[t]``, ``turns[t]`` and ``landmarks[t]`` hold what is told of step t, ``marks`` the
-    steps of each name of MARKER, ``steps`` each step of which anything is told. ``known[name][t]``
-    holds the numbers that are told by compass/2, shift/3, length/2 or straight/3, and
-    ``pairs[name]`` the pairs of same/2 or apart/2, as they are told; ``rests[name]`` the steps of
-    start/1 or look/1, and ``things`` what is done with markers that have names. ``unread`` is the
-    number of statements that are no facts of an instance. ``drift`` and ``stretch`` are the
-    percents that shifts and lengths may be wrong by: what is told must be numbers of clingo when it
-    is multiplied by them.
+    ``views[t]``, ``turns[t]`` and ``landmarks[t]`` have what is told of step t, ``marks`` the steps
+    of each name of MARKER, and ``steps`` each step of which anything is told. ``known[name][t]``
+    has the numbers that are told by compass/2, shift/3, length/2 or straight/3, ``pairs[name]`` the
+    pairs of same/2 or apart/2, ``rests[name]`` the steps of start/1 or look/1, and ``things`` what
+    is done with markers that have names. ``unread`` is the number of statements that are not facts
+    of an instance. ``drift`` and ``stretch`` are the percents by which shifts and lengths may be
+    wrong: multiplied by them, what is told must still be a number of clingo.
     """
 
     slots: dict[int, int] = field(default_factory=dict)
@@ -146,9 +154,11 @@ class Facts:
     stretch: int = STRETCH
 
     def faults(self, text: str, noisy: bool = False) -> Iterator[Fault]:
-        """Read a text, and tell all that is wrong with it: first each statement that is no fact,
-        then what is wrong with the facts together. What may be missing only because it stands
-        in such a statement is not told."""
+        """Read a text, and find all that is wrong with it.
+
+        First come the statements that are not facts, then what is wrong with the facts together.
+        What may be missing only because it stands in such a statement is not reported.
+        """
         yield from self._read(text)
         yield from (fault for fault in self._checked(noisy) if not (fault.lacks and self.unread))
 
@@ -159,7 +169,7 @@ class Facts:
             yield Fault("the facts of an instance are wanted, not JSON or a rule", line)
             return
         for line, statement, ends in statements(text):
-            # Most facts hold nothing but small numbers: clingo need not read these.
+            # Most facts have only small numbers, and need not be read by clingo.
             if ends and (plain := _NUMBERS.fullmatch(statement)):
                 name, numbers = plain[1], [*map(int, plain[2].split(","))]
                 if len(numbers) == FORMS.get(name) and name != "landmark":
@@ -175,8 +185,10 @@ class Facts:
                 self._add(line, fact.name, terms)
 
     def _add(self, line: int, name: str, arguments: Sequence[Any]) -> None:
-        """Take in a fact that is of one of the forms. Its arguments are numbers, and texts where
-        they are other terms."""
+        """Add a fact that has one of the forms.
+
+        Its arguments are numbers, or the texts of other terms.
+        """
         first = arguments[0]
         if name == "slots":
             self.slots.setdefault(first, line)
@@ -202,7 +214,7 @@ class Facts:
             told.setdefault(first, {}).setdefault(arguments[1], line)
 
     def _checked(self, noisy: bool) -> Iterator[Fault]:
-        """What is wrong with the facts together: with slots(K), then step by step."""
+        """Find what is wrong with the facts together: first with slots(K), then step by step."""
         if not self.slots and not self.views and not self.turns:
             yield Fault("there are no facts in it", lacks=True)
             return
@@ -222,7 +234,7 @@ class Facts:
         gaps = {step + 1: after for step, after in itertools.pairwise(later)}
         names = {None, *(name for _, _, name in self.things)}
         out = dict.fromkeys(names, False)  # whether each marker lies somewhere
-        whole = True  # whether that can be told
+        whole = True  # whether ``out`` is known
         for step in sorted({0, *self.steps, *(gap for gap in gaps if gap not in told)}):
             if step < 0:
                 yield Fault("steps are numbered from 0", self.steps[step], step)
@@ -247,7 +259,7 @@ class Facts:
         yield from self._far()
 
     def _marks(self, name: str | None, step: int) -> dict[str, int]:
-        """What is done with a marker after a step, each with its line."""
+        """List what is done with a marker after a step, each with its line."""
         if name is None:
             return {kind: self.marks[kind][step] for kind in MARKER if step in self.marks[kind]}
         told = {kind: self.things.get((kind, step, name)) for kind in MARKER}
@@ -300,7 +312,7 @@ class Facts:
                 yield Fault(said, min(told.values()), step)
             rests = any(step in self.rests[kind] for kind in RESTS)
             if told and rests and name == "length":
-                yield Fault("there is a length, but it is no travel", min(told.values()), step)
+                yield Fault("there is a length, but it is not a travel", min(told.values()), step)
             if len(told) > 1:
                 yield Fault(f"more than one {what}", sorted(told.values())[1], step)
         for (slot,), line in self.known["compass"].get(step, {}).items():
@@ -316,9 +328,10 @@ class Facts:
             yield Fault("it is told to be of another place than itself", told_apart, step)
 
     def _pair_faults(self, step: int, slots: int | None, noisy: bool) -> Iterator[Fault]:
-        """What is wrong with the pairs of gateways that are told of a step."""
+        """Find what is wrong with the pairs of gateways that are told of a step."""
         view = self.views.get(step, {})
-        told: dict[int, dict[int, tuple[int, str]]] = {}  # of each slot the others, with lines
+        # For each slot the other slots of its pairs, with lines.
+        told: dict[int, dict[int, tuple[int, str]]] = {}
         for (one, other), line in self.known["straight"].get(step, {}).items():
             fact = f"straight({step},{one},{other})"
             for slot, end in (one, other), (other, one):
@@ -334,7 +347,7 @@ class Facts:
                 yield Fault(f"gateway {slot} is in more than one pair", line, step)
 
     def _far(self) -> Iterator[Fault]:
-        """The first step up to which the shifts are too much."""
+        """The first step at which the sum of the shifts is too large for clingo."""
         most = LARGEST // max(100, self.drift)
         told = {*self.turns, *(step for steps in self.rests.values() for step in steps)}
         sums, step = {0}, 1
@@ -348,7 +361,7 @@ class Facts:
             step += 1
 
     def experience(self) -> Experience:
-        """The experience that the facts make, if they have no fault."""
+        """Make the experience of the facts, which must have no fault."""
         (slots,) = self.slots
         rests = {name: self.rests[name].keys() for name in RESTS}
         steps = range(max([0, *self.turns, *rests["start"], *rests["look"]]) + 1)
@@ -377,7 +390,7 @@ class Facts:
         return [[*told.get(step, ())] for step in steps] if told else []
 
     def _each(self, name: str, steps: range) -> list[Any]:
-        """What is told of each step, or None: a number, or if there are several, all of them."""
+        """What is told of each step, or None: a number, or all of them if there are several."""
         told = (next(iter(self.known[name].get(step, ())), None) for step in steps)
         return (
             [one[0] if one and len(one) == 1 else one for one in told] if self.known[name] else []
@@ -387,8 +400,11 @@ class Facts:
 def range_fault(
     shifts: Iterable[Shift | None], lengths: Iterable[int | None], drift: int, stretch: int
 ) -> Fault | None:
-    """Which step's shift or length leaves what clingo's numbers hold, when it is multiplied by 100
-    or by the percent that it may be wrong by; those of shifts are summed."""
+    """Find the step whose shift or length is too large for clingo.
+
+    It is too large if clingo's numbers cannot hold it when it is multiplied by 100, or by the
+    percent by which it may be wrong; shifts are summed.
+    """
     far, most = 0, LARGEST // max(100, drift)
     for step, shift in enumerate(shifts, 1):
         far += abs(shift[0]) + abs(shift[1]) if shift else 0
@@ -412,15 +428,18 @@ def _too_long(length: int, most: int, stretch: int) -> str:
 
 
 def slots_fault(slots: int) -> str | None:
-    """What is wrong with a number of slots."""
+    """Say what is wrong with a number of slots."""
     if slots < 2 or slots % 2 or slots > MOST_SLOTS:
         return f"slots({slots}): K must be even, from 2 to {MOST_SLOTS}"
     return None
 
 
 def misfit(fact: clingo.Symbol, forms: Mapping[str, str] = SIGNATURES) -> str | None:
-    """Why a fact does not belong in an instance: it has none of the ``forms``, which are given
-    by name, or it has another term where a number is wanted."""
+    """Say why a fact does not belong in an instance.
+
+    Either it has none of the ``forms``, which are given by name, or it has another term where a
+    number is wanted.
+    """
     name, arguments = fact.name, fact.arguments
     text = cut_short(str(fact))
     known = FORMS if forms is SIGNATURES else {n: form.count(",") + 1 for n, form in forms.items()}
@@ -432,9 +451,9 @@ def misfit(fact: clingo.Symbol, forms: Mapping[str, str] = SIGNATURES) -> str | 
             has = "1 argument" if known[name] == 1 else f"{known[name]} arguments"
             more = f", or 2 with a name, {NAMED[name]}" if name in NAMED else ""
             return f"{text}: {name} has {has}, {forms[name]}{more}"
-        near = difflib.get_close_matches(name[:20], known, 1)
+        near = nearest(name, known)
         if fact.positive and near:
-            meant = f"did you mean {near[0]}/{known[near[0]]}?"
+            meant = f"did you mean {near}/{known[near]}?"
             return f"{text}: {name}/{len(arguments)} is not known; {meant}"
         every = ", ".join(f"{name}/{arity}" for name, arity in known.items())
         return f"{text} is not a fact over {every}"
@@ -449,22 +468,29 @@ def misfit(fact: clingo.Symbol, forms: Mapping[str, str] = SIGNATURES) -> str | 
 _TOKEN = re.compile(rf'%\*|%[^\n]*|\.\.|{STRING}|\.|[^%".]+|"', re.DOTALL)
 _COMMENT = re.compile(r"%\*|\*%|[^%*]+|[%*]", re.DOTALL)
 _FACT = re.compile(r"-?[a-z]\w*\(.*\)", re.DOTALL)
-_DECIMAL = re.compile(r"[a-z]\w*\([^()]*,\s*-?[0-9]+", re.DOTALL)  # cut at a decimal point
+# A fact that a decimal point has cut short.
+_DECIMAL = re.compile(r"[a-z]\w*\([^()]*,\s*-?[0-9]+", re.DOTALL)
 _NUMBERS = re.compile(r"([a-z]\w*)\(((?:0|-?[1-9][0-9]{0,8})(?:,(?:0|-?[1-9][0-9]{0,8}))*)\)")
 _NO_STOP = re.compile(r"\)\s+[a-z]\w*\(")
 
 
 def ground_facts(text: str, line: int = 1) -> Iterator[tuple[int, clingo.Symbol | str]]:
-    """The ground facts of a text, each with the line it begins in; the first line is ``line``.
-    In the place of a statement that is not a ground fact there is a text that says what it is."""
+    """Read the ground facts of a text, each with the line in which it begins.
+
+    The first line has the number ``line``. In the place of a statement that is not a ground fact
+    there is a text that says what it is.
+    """
     told = statements(text, line)
     return ((begins, _fact(statement, ends)) for begins, statement, ends in told)
 
 
 def statements(text: str, line: int = 1) -> Iterator[tuple[int, str, bool]]:
-    """The statements of a text, without comments and full stops, each with the line it begins in,
-    and with whether it ends: the last one may not. The first line is ``line``. A script is not
-    read, nor is what comes after it, because its text has no statements."""
+    """Split a text into statements, without comments and full stops.
+
+    Each comes with the line in which it begins (the first line has the number ``line``), and with
+    whether it ends, as the last one may not. A script is not read, nor is what follows it, because
+    the text of a script is not made of statements.
+    """
     fact: list[str] = []
     begins = line
     position = depth = 0
@@ -490,7 +516,7 @@ def statements(text: str, line: int = 1) -> Iterator[tuple[int, str, bool]]:
 
 
 def _fact(text: str, ends: bool) -> clingo.Symbol | str:
-    """The ground fact of a statement, or why there is none."""
+    """Read the ground fact of a statement, or say why there is none."""
     if not ends:
         return f"{quoted(text) if text else 'a comment'} does not end"
     if _DECIMAL.fullmatch(text):

@@ -6,18 +6,21 @@ from dataclasses import dataclass
 from topomap.model.experience import DState, Misread
 from topomap.model.topology import Gateway
 
-Cube = tuple[DState, ...]  # the first dstates of a hypothesis
-OPTIMAL, BEST_SO_FAR = "optimal", "best so far"  # the best maps, and where no map is closed
-BEST = (OPTIMAL, BEST_SO_FAR)  # the kinds that are asked for as optimal
-UNPROVED = "not proved to be best"  # the kind of a map of which it is open whether it is
+Cube = tuple[DState, ...]  # the first dstates of hypotheses
+OPTIMAL, BEST_SO_FAR = "optimal", "best so far"  # the second if no map is closed
+BEST = (OPTIMAL, BEST_SO_FAR)  # the kinds of the answers to a question about optimal maps
+UNPROVED = "not proved to be best"  # the kind of a map that may not be one of the best
 
 
 @dataclass(frozen=True)
 class Found:
-    """A hypothesis: the dstate after each step, of what kind it is, and if the query
-    minimises, its costs, most important first, and whether they are proved least; and what
-    was misread. ``open`` says that an optimal map is asked for, and that this one has pending
-    gateways: it is given as long as no closed map is found."""
+    """A hypothesis that was found.
+
+    It has the dstate after each step, and its kind. If the query minimises, it has its costs, the
+    most important one first, and whether they are proved to be least. It has what was misread.
+    ``open`` is true if an optimal map is asked for and this one has pending gateways: it is given
+    as long as no closed map is found.
+    """
 
     at: tuple[DState, ...]
     kind: str
@@ -28,5 +31,5 @@ class Found:
 
 
 def steps_json(at: Sequence[Gateway], first: int = 0) -> list[list[int]]:
-    """The dstate after each step, ``[[T,P,S], ...]``, of which this is the first."""
+    """Convert the dstate after each step to ``[[T,P,S], ...]``, from step ``first`` on."""
     return [[step, place, slot] for step, (place, slot) in enumerate(at, first)]

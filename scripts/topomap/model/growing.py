@@ -1,4 +1,4 @@
-"""Sequences that grow at their end: one that is longer by an item shares the others with it."""
+"""Sequences that grow at their end; a longer one shares its items with the shorter one."""
 
 from collections.abc import Iterator, Sequence
 from itertools import islice
@@ -8,8 +8,11 @@ T = TypeVar("T")
 
 
 class Growing(Sequence[T], Generic[T]):
-    """A sequence that is never changed. ``then`` gives one that is longer by one item: at once, as
-    long as nothing else has been put after this one; else by copying it."""
+    """A sequence that never changes.
+
+    ``then`` makes a sequence that is longer by one item. This takes no time as long as nothing else
+    was added after this sequence; otherwise it is copied.
+    """
 
     __slots__ = ("_items", "_size")
 
@@ -18,7 +21,7 @@ class Growing(Sequence[T], Generic[T]):
         self._size = size
 
     def then(self, item: T) -> "Growing[T]":
-        """The sequence with one more item."""
+        """Make the sequence with one more item."""
         items = self._items
         if len(items) == self._size:
             items.append(item)
@@ -27,12 +30,14 @@ class Growing(Sequence[T], Generic[T]):
         return Growing(items, self._size + 1)
 
     def first(self, size: int) -> "Growing[T]":
-        """The first items, so many."""
+        """Make the sequence of the first items, as many as ``size``."""
         return Growing(self._items, size)
 
     def common(self, other: "Growing[T]") -> int:
-        """How many items are the same at the beginning of both; little is to be done if the one
-        was made of the other."""
+        """Count the items that are the same at the beginning of both sequences.
+
+        This is quick if one was made from the other.
+        """
         size = min(self._size, other._size)
         if self._items is other._items:
             return size

@@ -7,9 +7,11 @@ from topomap.model.vocabulary import OPTIMIZING
 
 @dataclass(frozen=True)
 class Query:
-    """Which hypotheses are asked for: the parts of the theory that are to hold, the
-    most places, and the last step that counts; the encoding that is to give them; and how many
-    views may be wrong."""
+    """Which hypotheses are asked for.
+
+    It has the parts of the theory that must hold, the largest number of places, and the last step
+    that counts; the encoding that is used; and how many views may be wrong.
+    """
 
     parts: frozenset[str] = frozenset()
     places: int | None = None
@@ -19,6 +21,7 @@ class Query:
 
     @property
     def optimizes(self) -> bool:
+        """Whether something is minimised."""
         return bool(self.parts & OPTIMIZING) or self.noise is not None
 
     @property

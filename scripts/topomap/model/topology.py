@@ -1,8 +1,8 @@
 """Topological maps: places with gateways in cyclic order, and the links between them.
 
-A map is a rotation system. Its gateways are pairs (place, slot), slots numbered
-clockwise from 0 to ``slots - 1``; opposite slots are ``slots / 2`` apart. The same
-class holds the map of a hypothesis and the map of a whole environment.
+A map is a rotation system. Its gateways are pairs (place, slot). Slots are numbered clockwise from
+0 to ``slots - 1``, and opposite slots are ``slots / 2`` apart. The same class has the map of a
+hypothesis and the map of a whole environment.
 """
 
 from collections import Counter
@@ -11,14 +11,16 @@ from dataclasses import dataclass, field
 from itertools import combinations
 from typing import Any
 
-Place = Any  # hashable, and sortable among the places of one map
+Place = Any  # it can be hashed, and compared with the other places of its map
 Gateway = tuple[Place, int]
 
 
 @dataclass(frozen=True)
 class Exceptional:
-    """An exception of a map to boundary consistency: its ``kind``, the ``paths`` that it is of, by
-    their numbers, and the ``places``."""
+    """An exception of a map to boundary consistency.
+
+    It has its ``kind``, the ``paths`` that it is about, by their numbers, and the ``places``.
+    """
 
     kind: str
     paths: tuple[int, ...]
@@ -29,11 +31,11 @@ class Exceptional:
 class TopologicalMap:
     """A map (the paper, sections II and III.A).
 
-    ``stars`` gives the gateways of each place; ``links`` gives the gateway at the
-    other end of each linked gateway, in both directions; ``landmarks`` the landmarks
-    recognised at a place, as text. ``across`` gives for gateways the other one of the place that is
-    on the same path, in both directions; a gateway that is not in it ends its path. If it is None,
-    opposite gateways are on one path.
+    ``stars`` gives the gateways of each place. ``links`` gives the gateway at the other end of each
+    linked gateway, in both directions. ``landmarks`` gives the landmarks recognised at a place, as
+    texts. ``across`` gives the other gateway of the place that is on the same path, in both
+    directions; a gateway that is not in it ends its path. If ``across`` is None, opposite gateways
+    are on one path.
     """
 
     slots: int
@@ -43,13 +45,13 @@ class TopologicalMap:
     across: Mapping[Gateway, Gateway] | None = None
 
     def gateways(self) -> Iterator[Gateway]:
-        """All gateways, by place and slot."""
+        """All gateways, in the order of places and slots."""
         for place, star in self.stars.items():
             for slot in sorted(star):
                 yield place, slot
 
     def edges(self) -> list[tuple[Gateway, Gateway]]:
-        """Each link once, from the end that comes first among the gateways."""
+        """Each link once, beginning with the gateway that comes first in the order."""
         seen: set[Gateway] = set()
         edges = []
         for gateway in self.gateways():
@@ -59,17 +61,20 @@ class TopologicalMap:
         return edges
 
     def pending(self) -> list[Gateway]:
-        """Gateways without a link (the paper, section III.B)."""
+        """The gateways without a link (the paper, section III.B)."""
         return [gateway for gateway in self.gateways() if gateway not in self.links]
 
     def view(self, gateway: Gateway) -> frozenset[int]:
-        """Gateways of the place, as slots clockwise from the one stood at."""
+        """The gateways of the place, as slots clockwise from the one where the agent stands."""
         place, slot = gateway
         return frozenset((other - slot) % self.slots for other in self.stars[place])
 
     def pairs(self, gateway: Gateway) -> frozenset[tuple[int, int]] | None:
-        """Which gateways of the place are on one path, as slots clockwise from the one stood at;
-        None if opposite ones are."""
+        """The pairs of gateways of the place that are on one path.
+
+        They are slots clockwise from the gateway where the agent stands; None if opposite gateways
+        are on one path.
+        """
         if self.across is None:
             return None
         place, slot = gateway
@@ -81,16 +86,19 @@ class TopologicalMap:
         )
 
     def opposite(self, gateway: Gateway) -> Gateway:
-        """The gateway or bare direction straight across the place. Where it is told which gateways
-        are on one path (``across``), the direction of a path that ends at gateway S is the number
-        -1 - S, as another path may have a gateway there."""
+        """The direction on the opposite side of the place, with or without a gateway.
+
+        Where it is told which gateways are on one path (``across``), the direction of a path that
+        ends at gateway S is the number -1 - S, because another path may have a gateway in the
+        opposite slot.
+        """
         place, slot = gateway
         if self.across is None:
             return place, (slot + self.slots // 2) % self.slots
         return self.across.get(gateway, (place, -1 - slot))
 
     def bearing(self, heading: Gateway) -> int:
-        """The slot of a gateway, or of a bare direction."""
+        """The slot of a gateway, or of a direction without a gateway."""
         slot = heading[1]
         return slot if slot >= 0 else (self.slots // 2 - 1 - slot) % self.slots
 
@@ -102,9 +110,11 @@ class TopologicalMap:
         return [[(end[0], self.bearing(end)) for end in path] for path in paths]
 
     def straight_on(self, gateway: Gateway) -> list[Gateway]:
-        """Gateways of arrival on the walk that leaves by ``gateway`` and goes straight
-        on, up to a pending gateway, a place without a gateway ahead, or the return to
-        the start."""
+        """The gateways of arrival on a walk that leaves by ``gateway`` and goes straight on.
+
+        It ends at a pending gateway, at a place without a gateway ahead, or when it returns to its
+        start.
+        """
         arrivals: list[Gateway] = []
         ahead = gateway
         while ahead in self.links:
@@ -115,10 +125,10 @@ class TopologicalMap:
         return arrivals
 
     def paths(self) -> list[list[Gateway]]:
-        """Each path as its dstates in order: places, and the slot of its heading there.
+        """Each path as its dstates in order: places, each with the slot of its heading.
 
-        A path continues through opposite gateways (semantics of the SSH). A circular
-        path is given once round.
+        A path continues through opposite gateways (semantics of the SSH). A circular path is given
+        once round.
         """
         paths = []
         done: set[Gateway] = set()
@@ -137,8 +147,10 @@ class TopologicalMap:
         return paths
 
     def path_axiom_fault(self) -> str | None:
-        """How the map breaks the path axiom, or None: a place occurs at most once on
-        a path, and no path is circular."""
+        """How the map breaks the path axiom, or None.
+
+        By this axiom a place occurs at most once on a path, and no path is circular.
+        """
         for path in self.paths():
             places = [place for place, _ in path]
             for place, times in Counter(places).items():
@@ -149,9 +161,11 @@ class TopologicalMap:
         return None
 
     def beside(self, path: Sequence[Gateway]) -> tuple[set[Place], set[Place]]:
-        """The places right and left of a path: where those come who leave it to that side and
-        walk straight on (the SSH's boundary regions). A gateway in the very slot of the heading, or
-        of what is behind, is on neither side."""
+        """The places to the right and to the left of a path (the SSH's boundary regions).
+
+        They are the places to which one comes who leaves the path to that side and walks straight
+        on. A gateway in the very slot of the heading, or in the opposite slot, is on neither side.
+        """
         right: set[Place] = set()
         left: set[Place] = set()
         for heading in path:
@@ -165,10 +179,12 @@ class TopologicalMap:
         return right, left
 
     def exceptions(self) -> Iterator[Exceptional]:
-        """What is not consistent about the boundaries (semantics: "What is preferred, also where no
-        map is perfect"): the pairs of paths that share two places or more, the paths that hold a
-        place twice, and each place that is both left and right of a path. Paths are numbered as
-        ``paths`` gives them."""
+        """The exceptions to consistent boundaries.
+
+        They are the pairs of paths that share two places or more, the paths that contain a place
+        twice, and the places that are both left and right of a path (semantics: "What is preferred,
+        also where no map is perfect"). Paths are numbered as in ``paths``.
+        """
         paths = self.paths()
         on = [Counter(place for place, _ in path) for path in paths]
         for (one, here), (other, there) in combinations(enumerate(on), 2):
@@ -189,8 +205,11 @@ class TopologicalMap:
         return next(self.exceptions(), None) is None
 
     def next(self, gateway: Gateway) -> Gateway:
-        """The next link of the face walk: take the link out of ``gateway``, then the
-        next linked gateway counter-clockwise (the paper's next = pred . rev)."""
+        """The next link of the face walk (the paper's next = pred . rev).
+
+        The walk takes the link out of ``gateway``, and then the next linked gateway
+        counter-clockwise.
+        """
         place, slot = self.links[gateway]
         while True:
             slot = (slot - 1) % self.slots
@@ -198,7 +217,7 @@ class TopologicalMap:
                 return place, slot
 
     def faces(self) -> list[list[Gateway]]:
-        """Each face as the gateways its walk leaves by; one empty face without links."""
+        """Each face as the gateways by which its walk leaves; one empty face without any links."""
         faces = []
         done: set[Gateway] = set()
         for gateway in self.gateways():
@@ -212,13 +231,13 @@ class TopologicalMap:
         return faces or [[]]
 
     def genus(self) -> int:
-        """Genus by the Euler-Poincare formula: the sum of those of the components."""
+        """The genus by the Euler-Poincare formula, summed over the components."""
         bare = len(self.stars) - len({place for place, _ in self.links})
         faces = bare + (len(self.faces()) if self.links else 0)
         return (2 * len(self.components()) - len(self.stars) + len(self.links) // 2 - faces) // 2
 
     def components(self) -> list[list[Place]]:
-        """The places of each component: there is one, unless the map is of several logs."""
+        """The places of each component; a map of one log has one component."""
         ends: dict[Place, dict[Place, None]] = {place: {} for place in self.stars}
         for (place, _), (other, _) in self.links.items():
             ends[place][other] = None
@@ -252,9 +271,12 @@ class TopologicalMap:
         ]
 
     def isomorphic(self, other: "TopologicalMap") -> bool:
-        """Whether the maps are one up to the names of places and the slot in which
-        each place counts from: the same connected embedded graph with the same
-        directions at each place, and the same landmarks."""
+        """Tell whether the maps are one map up to names.
+
+        The names of places may differ, and so may the slot from which each place counts. They must
+        be the same connected embedded graph, with the same directions at each place and the same
+        landmarks.
+        """
         sizes = len(self.stars), len(self.links), self.slots
         if sizes != (len(other.stars), len(other.links), other.slots):
             return False
@@ -262,8 +284,11 @@ class TopologicalMap:
         return start is None or any(self._match(start, other, g) for g in other.gateways())
 
     def indistinguishable(self, mine: Gateway, other: "TopologicalMap", theirs: Gateway) -> bool:
-        """Whether no further walk from these dstates, in closed maps, can tell the maps apart:
-        whatever ways are taken, the same is seen in both (the paper, Figure 1)."""
+        """Tell whether the maps are bisimilar from these dstates, if both are closed.
+
+        Then no further walk can tell them apart: whichever ways are taken, the same is seen in both
+        (the paper, Figure 1).
+        """
         seen = {(mine, theirs)}
         for here, there in (waiting := list(seen)):
             (place, slot), (image, at) = here, there
@@ -280,7 +305,7 @@ class TopologicalMap:
         return True
 
     def _match(self, mine: Gateway, other: "TopologicalMap", theirs: Gateway) -> bool:
-        """Whether laying ``mine`` on ``theirs`` makes the maps coincide."""
+        """Tell whether the maps coincide if ``mine`` is laid on ``theirs``."""
         image: dict[Place, Gateway] = {}
         used: set[Place] = set()
         stack = [(mine, theirs)]
@@ -310,7 +335,7 @@ class TopologicalMap:
 
 
 def label(place: Place) -> str:
-    """A place's name in messages, headers and on the command line."""
+    """The name of a place in messages, headers and on the command line."""
     return ",".join(map(str, place)) if isinstance(place, tuple) else str(place)
 
 

@@ -1,7 +1,7 @@
 """All that is wrong with instances, and what looks like a mistake.
 
-Nothing is solved. The faults are those for which every command refuses an instance. Warnings are
-about instances that may be meant as they are, but seldom are.
+Nothing is solved. Faults are those for which every command refuses an instance. Warnings are about
+what may be meant as it is, but seldom is.
 """
 
 from collections import defaultdict
@@ -16,9 +16,9 @@ from topomap.runtime import files
 from topomap.runtime.errors import InputError
 from topomap.runtime.limits import DRIFT, STRETCH
 
-MOST = 1000  # faults of a file that are told in JSON
-SHOWN = 50  # the same in lines
-# So many turns back, each at a place with other gateways, are strange if all turns are back:
+MOST = 1000  # the largest number of faults of a file in JSON
+SHOWN = 50  # the largest number of faults in lines
+# So many turns back, each at a place with other gateways, are strange if no turn is another one:
 ALWAYS = 3  # in the whole exploration
 OFTEN = 4  # at places that look alike
 START = (
@@ -28,7 +28,7 @@ START = (
 
 
 def judged(path: str, drift: int = DRIFT, stretch: int = STRETCH) -> dict[str, Any]:
-    """What is to be told of a file, where shifts and lengths may be wrong by these percents."""
+    """Judge a file; shifts and lengths may be wrong by these percents."""
     facts = Facts(drift=drift, stretch=stretch)
     told: dict[str, Any] = {"file": path, "valid": False}
     told |= dict.fromkeys(("steps", "slots", "views", "landmarks"))
@@ -60,7 +60,7 @@ def _json(fault: Fault, kind: str) -> dict[str, Any]:
 
 
 def lines(file: dict[str, Any]) -> Iterator[str]:
-    """The same in lines to read."""
+    """Write the judgement as lines to read."""
     name = file["file"]
     if file["valid"]:
         counts = [words.number(file["steps"], "step"), words.number(file["slots"], "slot")]
@@ -79,7 +79,7 @@ def lines(file: dict[str, Any]) -> Iterator[str]:
 
 
 def strange(seen: Experience, facts: Facts) -> Iterator[Fault]:
-    """What looks like a mistake in an experience; ``facts`` tell the lines."""
+    """Find what looks like a mistake in an experience; ``facts`` has the lines."""
     if not seen.steps:
         said = "there is no turn(1), so the place where the agent starts is never left"
         yield Fault(said, facts.steps[0], 0)
@@ -115,8 +115,11 @@ def strange(seen: Experience, facts: Facts) -> Iterator[Fault]:
 
 
 def _kind(seen: Experience, step: int) -> Any:
-    """What a place looks like, at whichever gateway the agent arrives: its landmarks, and how far
-    its gateways lie apart. Their order is left out: warnings are then fewer, but none is wrong."""
+    """What a place looks like, whichever gateway the agent arrives by.
+
+    It consists of its landmarks, and how far apart its gateways lie. The order of the gaps is left
+    out: this makes warnings fewer, but none wrong.
+    """
     view = sorted(seen.views[step])
     apart = [after - before for before, after in pairwise(view)]
     return tuple(sorted([*apart, seen.slots - sum(apart)])), seen.landmarks[step]

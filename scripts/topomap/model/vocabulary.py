@@ -1,39 +1,42 @@
-"""What can be asked of maps: the parts of the theory, and what statements are made of. It loads
-nothing, so that help and a mistyped call need not wait until the solver is loaded."""
+"""What can be asked of maps: the parts of the theory, and what statements are made of.
+
+The module loads nothing, so that help, and the message about a mistyped call, need not wait for the
+solver.
+"""
 
 from collections.abc import Iterable
 
 PARTS = {
-    "planar": "planar: each link joins two gateways of one face",
-    "euler": "planar, by Euler's formula: places - links + faces = 2",
+    "planar": "the map is planar: each new link joins two gateways of one face",
+    "euler": "the map is planar by Euler's formula: places - links + faces = 2",
     "closed": "no gateway is pending",
     "travelled": "every path has two places or more",
-    "boundary": "no place is both left and right of a path, or on it and beside it",
+    "boundary": "no place is both left and right of a path, or both on it and beside it",
     "perpendicular": "two paths meet at most once, and no three make a triangle",
-    "genus": "maps with the least genus",
-    "exceptions": "maps with the fewest exceptions to consistent boundaries",
-    "minimal": "maps with the fewest paths, then the fewest places",
-    "no_path_axiom": "a path may hold a place twice, and may be circular",
+    "genus": "maps with the least genus are preferred",
+    "exceptions": "maps with the fewest exceptions to consistent boundaries are preferred",
+    "minimal": "maps with the fewest paths, then the fewest places, are preferred",
+    "no_path_axiom": "a path may contain a place twice, and may be circular",
 }
 OPTIMIZING = {"genus", "exceptions", "minimal"}
-RELAXING = ("no_path_axiom",)  # they take a default away
-PRUNING = ("planar", "perpendicular")  # what has them has had them after each step
-CHOSEN = (*PRUNING, *RELAXING)  # what can be asked of maps that are drawn, explored or reported
+RELAXING = ("no_path_axiom",)  # parts that take a default away
+PRUNING = ("planar", "perpendicular")  # a map that has them had them after each step
+CHOSEN = (*PRUNING, *RELAXING)  # the parts that draw, explore and report accept
 DEMANDS = tuple(part for part in PARTS if part not in (*OPTIMIZING, *RELAXING))
-PROPERTIES = tuple(part for part in DEMANDS if part != "euler")  # which is another rule for planar
-FORMS = ("work", "paper")  # of the encoding: the one that does the work, and the statement
-STATED = {"planar", "closed", "travelled", "boundary", "perpendicular", "minimal"}  # its parts
-BEYOND = {  # the files of those that go with the statement, beyond the paper
+PROPERTIES = tuple(part for part in DEMANDS if part != "euler")  # euler is another rule for planar
+FORMS = ("work", "paper")  # encodings: the efficient one, and the statement of the paper
+STATED = {"planar", "closed", "travelled", "boundary", "perpendicular", "minimal"}  # by paper
+BEYOND = {  # parts beyond the paper that can be combined with it, and their files
     "exceptions": "beyond/exceptions",
     "no_path_axiom": "../no_path_axiom",
 }
 
-# What a statement can say of the whole map: that it has what a part demands, that some path is
-# circular, or that two paths share two places or more.
+# What a statement can say of the whole map: that it meets the demand of a part, that some path
+# is circular, or that two paths share two places or more.
 QUALITIES = (*PROPERTIES, "circular", "meets_twice")
 
-# What each argument is: a step, or a slot counted clockwise of where the agent stood after
-# the step before it.
+# The kinds of the arguments: a step, or a slot, counted clockwise from the gateway where the
+# agent stood after the step that precedes it.
 RELATIONS = {
     "same": ("step", "step"),
     "linked": ("step", "slot", "step", "slot"),
@@ -41,7 +44,7 @@ RELATIONS = {
     "pending": ("step", "slot"),
     "at": ("step", "place", "slot"),
 }
-FIGURES = {  # as query.lp has them
+FIGURES = {  # with their names in query.lp
     "places": "place",
     "paths": "path",
     "links": "link",
@@ -69,8 +72,10 @@ agent stood after the step:
 
 
 def unstated(parts: Iterable[str]) -> list[str]:
-    """Those of these parts that ``encodings/paper/`` does not state; it says what is perpendicular
-    with the path axiom only."""
+    """List those of these parts that ``encodings/paper/`` does not state.
+
+    It states ``perpendicular`` only together with the path axiom.
+    """
     asked = {*parts}
     free = {"perpendicular"} & asked if "no_path_axiom" in asked else set()
     return sorted(asked - STATED - BEYOND.keys() | free)

@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING
 from topomap.model.topology import Gateway, gid
 from topomap.runtime.errors import printable
 
-if TYPE_CHECKING:  # who only reads a call need not load the solver
+if TYPE_CHECKING:  # parsing a call must not load the solver
     from topomap.model.experience import Experience, Misread
 
-MOST = 24  # gateways of a view that are told one by one
-LONGEST = 16  # letters of a line of the landmarks of a place, in a picture
-MOST_LINES = 24  # of the landmarks of a place
+MOST = 24  # up to so many gateways of a view are listed one by one
+LONGEST = 16  # letters in a line of the landmarks of a place in a picture
+MOST_LINES = 24  # lines of the landmarks of a place
 RULES = {
     "view": "another view is seen there",
     "landmark": "other landmarks are seen there",
@@ -32,17 +32,17 @@ RULES = {
 
 
 def plural(count: int, noun: str, nouns: str | None = None) -> str:
-    """The noun for so many."""
+    """The noun in its form for such a number."""
     return noun if count == 1 else nouns or f"{noun}s"
 
 
 def number(count: int, noun: str, nouns: str | None = None) -> str:
-    """So many of them."""
+    """A number with its noun."""
     return f"{count:,} {plural(count, noun, nouns)}"
 
 
 def direction(slot: int, slots: int) -> str:
-    """A slot, counted clockwise from the gateway arrived by."""
+    """A slot in words, counted clockwise from the gateway by which the agent arrived."""
     if slot == 0:
         return "back"
     if slot == slots // 2:
@@ -92,7 +92,7 @@ def marker(experience: "Experience", step: int) -> str:
 
 
 def known(experience: "Experience", step: int) -> str:
-    """What is known of a step besides what is seen."""
+    """What is known of a step besides its view."""
     measured = experience.measured(step)
     told = [f"{name} {', '.join(map(str, numbers))}" for name, numbers in measured]
     for name, pairs in (
@@ -107,7 +107,7 @@ def known(experience: "Experience", step: int) -> str:
 
 
 def markers(experience: "Experience", at: Sequence[Gateway]) -> str:
-    """The same of a map's steps, with the places."""
+    """What is known of markers after the steps of a map, with the places."""
     told = ((step, marker(experience, step), place) for step, (place, _) in enumerate(at))
     return "; ".join(
         f"{what} at place {place} after step {step}" for step, what, place in told if what
@@ -115,7 +115,7 @@ def markers(experience: "Experience", at: Sequence[Gateway]) -> str:
 
 
 def disbelieved(experience: "Experience", misread: "Sequence[Misread]") -> str:
-    """What was misread, step by step; the experience is the corrected one."""
+    """What was misread, step by step; ``experience`` is the corrected one."""
     told: dict[int, list[str]] = {}
     for step, what in misread:
         gateway = isinstance(what, int)
@@ -127,8 +127,10 @@ def disbelieved(experience: "Experience", misread: "Sequence[Misread]") -> str:
 
 
 def refused(arrivals: Mapping[str, Sequence[Gateway]], new: int, most: int = 6) -> str:
-    """The arrivals that are refused at a step, by rule, the first of them if they are many;
-    ``new`` is the place that the step makes."""
+    """The arrivals that are refused at a step, by rule; only the first ones if there are many.
+
+    ``new`` is the place that the step makes.
+    """
     parts = []
     for rule, gateways in arrivals.items():
         names = ["a new place" if place == new else gid((place, slot)) for place, slot in gateways]
@@ -138,23 +140,23 @@ def refused(arrivals: Mapping[str, Sequence[Gateway]], new: int, most: int = 6) 
 
 
 def listed(numbers: Collection[int], most: int = 8) -> str:
-    """Numbers in a row, the first of them if they are many."""
+    """Numbers in a row; only the first ones if there are many."""
     first = ", ".join(map(str, sorted(numbers)[:most]))
     return first + (f" and {len(numbers) - most:,} more" if len(numbers) > most else "")
 
 
 def short(text: str, most: int) -> str:
-    """The beginning of a text that is too long."""
+    """The text, or its beginning if it is too long."""
     return text if len(text) <= most else text[: most - 1] + "…"
 
 
 def signs(landmarks: Collection[str]) -> str:
-    """The landmarks of a place in a few words: strings without their quotes, in one line."""
+    """The landmarks of a place in a few words, without the quotes of strings, in one line."""
     return short(_signs(landmarks), LONGEST)
 
 
 def sign_lines(landmarks: Collection[str]) -> list[str]:
-    """The same in a picture: whole, over several lines if they are long."""
+    """The landmarks of a place in a picture, whole, over several lines if they are long."""
     return wrapped(_signs(landmarks), LONGEST)
 
 
@@ -163,8 +165,10 @@ def _signs(landmarks: Collection[str]) -> str:
 
 
 def wrapped(text: str, wide: int) -> list[str]:
-    """A name over lines of so many letters at most, parted between words where that can be; only
-    a name of many lines is cut."""
+    """A name in lines of at most so many letters, broken between words if possible.
+
+    Only a name that needs many lines is cut.
+    """
     lines = textwrap.wrap(text, wide) or [text]
     return lines if len(lines) <= MOST_LINES else [*lines[: MOST_LINES - 1], "…"]
 

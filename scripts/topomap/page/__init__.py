@@ -1,1 +1,1 @@
-"""One page that tells all about explorations."""
+"""The report: one HTML page about explorations."""

@@ -1,5 +1,7 @@
-"""A chapter of the page: what it tells of an exploration, found out within a time limit: the best
-maps, the replay, drawings, and counts by clingo."""
+"""A chapter of the page: what it tells of one exploration.
+
+It has the best maps, the replay, drawings, and counts by clingo, all found within a time limit.
+"""
 
 import time
 from collections.abc import Iterator
@@ -21,13 +23,16 @@ from topomap.runtime.watch import Attempt, Late, Watch
 from topomap.solver import solving
 from topomap.solver.enumeration import best_maps
 
-SHARE = 0.2  # of the time that is left for pictures, for one of them
-SMALL = 100  # places in a small picture, at most
+SHARE = 0.2  # the share of the time for pictures that one picture may take
+SMALL = 100  # the largest number of places in a small picture
 
 
 def given_maps(file: str, path: str, whole: Experience, query: Query) -> list[Scene]:
-    """The maps of an instance in a file, for the page to tell of. Raises InputError, one line,
-    where they are none of the hypotheses that it counts."""
+    """Read the maps of an instance in a file, which the page is to show.
+
+    Raises:
+        InputError: They are none of the hypotheses that the page counts. One line.
+    """
     cut = whole.cut(LARGEST if query.horizon is None else query.horizon)
     demands = sorted(query.parts)
     demands += [] if query.places is None else [f"bound({query.places})"]
@@ -38,7 +43,9 @@ def given_maps(file: str, path: str, whole: Experience, query: Query) -> list[Sc
         for number, (place, entry) in enumerate(document.best, 1):
             where = f"{document.where}: map {place}"
             if entry.get("misread"):
-                raise InputError(f"{where}: it disbelieves what was seen; the page is of all of it")
+                raise InputError(
+                    f"{where}: it contradicts views, but the page is about all that was seen"
+                )
             at = beginning(where, entry["at"], whole, cut, demands)
             rest = path, number, many, document.kind
             rests = cut.starts | cut.looks
@@ -46,16 +53,18 @@ def given_maps(file: str, path: str, whole: Experience, query: Query) -> list[Sc
                 Scene(cut.map_of(at), at, *rest, whole=document.whole, rests=rests, seen=cut)
             )
     if len({scene.at for scene in made}) < len(made):
-        raise InputError(f"{file}: a map is there twice")
+        raise InputError(f"{file}: a map occurs twice")
     if not made:
         raise InputError(f"{file}: no maps of {path} in it")
     return made
 
 
 class Chapter:
-    """What the page tells of an exploration: of its best maps, or of those that are ``given``;
-    ``faults`` are what it lacks, and why; ``whole`` tells whether the maps are all of their
-    kind."""
+    """What the page tells of an exploration.
+
+    It is about the best maps, or about those that are ``given``. ``faults`` says what is missing,
+    and why. ``whole`` tells whether the maps are all of their kind.
+    """
 
     def __init__(
         self,
@@ -67,19 +76,19 @@ class Chapter:
         given: list[Scene] | None = None,
     ):
         self.name, self.seen, self.query, self.watch = name, seen, query, watch
-        self.most = most  # maps to be drawn
+        self.most = most  # the largest number of maps to draw
         self.faults: list[str] = []
         self.given = given is not None
         self.best: list[Scene] = given or []
         self.whole = all(scene.whole for scene in self.best)
         self.steps: list[Step] = []
-        self.shapes: dict[Cube, Drawing] = {}  # small ones, but for the best maps
+        self.shapes: dict[Cube, Drawing] = {}  # small drawings, except those of the best maps
         self.counts: dict[str, list[int | None]] = {
             which: [None] * (seen.steps + 1) for which in ("without planarity", "with planarity")
         }
 
     def look(self, seconds: float) -> None:
-        """Find out what can be found in that time: no part of the work takes it all."""
+        """Find out what can be found in that time; no part of the work takes all of it."""
         now = time.monotonic()
         self.watch.deadline.at = now + seconds / 3
         if not self.given:
@@ -108,7 +117,7 @@ class Chapter:
             self.faults.append(f"{what}: {attempt.fault}")
 
     def _count(self) -> Iterator[None]:
-        """Count the hypotheses after each step, by clingo."""
+        """Count the hypotheses after each step by clingo."""
         found = self.watch.found
         parts = [self.query.parts - {"planar"}, self.query.parts | {"planar"}]
         queries = [replace(self.query, parts=some) for some in parts]
@@ -123,7 +132,7 @@ class Chapter:
 
     @property
     def counted(self) -> list[int | None]:
-        """The hypotheses after each step that the replay is about, by clingo."""
+        """The number of hypotheses after each step of the replay, by clingo."""
         return self.counts[f"with{'' if 'planar' in self.query.parts else 'out'} planarity"]
 
     def _agree(self, step: int) -> None:
@@ -132,7 +141,7 @@ class Chapter:
             raise RuntimeError(f"{self.name}: step {step}: the search has {ours}, clingo {theirs}")
 
     def alive(self, step: int) -> int | None:
-        """How many hypotheses there are after a step, if it is known."""
+        """How many hypotheses there are after a step, if that is known."""
         by_clingo = self.counted[step]
         return self.steps[step].alive if by_clingo is None else by_clingo
 
@@ -141,7 +150,7 @@ class Chapter:
             self.shapes[at] = drawn
 
     def _draw(self) -> Iterator[None]:
-        """Drawings of the best maps, and small ones: of the first of each, then of the others."""
+        """Draw the best maps, and small maps of the replay: one for each step, then others."""
         ready()
         yield from self._draw_best(self.best[: min(1, self.most)])
         yield from self._draw_shown(0)
@@ -150,7 +159,7 @@ class Chapter:
             yield from self._draw_shown(rank)
 
     def _late(self) -> Late:
-        """What tells when a picture has had its share of the time that is left for pictures."""
+        """Make the function that tells whether a picture has had its share of the time."""
         at = self.watch.deadline.at
         left = 0.0 if at is None else at - time.monotonic()
         end = time.monotonic() + left * SHARE
@@ -169,8 +178,11 @@ class Chapter:
                 yield
 
     def _draw_shown(self, rank: int) -> Iterator[None]:
-        """Of each step one, from the last step back: that of a map which grows to another one
-        that is shown is a part of the other's."""
+        """Draw one hypothesis of each step, from the last step back.
+
+        The drawing of a map that grows into another one that is shown is a part of the other
+        drawing.
+        """
         last = self.seen.steps
         for number in range(last, -1, -1):
             self.watch.title(f"pictures of step {number} of {last}")

@@ -1,5 +1,8 @@
-"""An exploration again, step by step: how many hypotheses there are, which of them to show,
-and what was refused, by which rule. By the search, with no clock in what it decides."""
+"""The replay of an exploration, step by step.
+
+It tells how many hypotheses there are, which of them to show, and which arrivals were refused, by
+which rule. It is made by the search, and no decision in it depends on a clock.
+"""
 
 import heapq
 from collections import Counter
@@ -14,19 +17,20 @@ from topomap.runtime.watch import Attempt, Watch
 from topomap.search import traversal
 from topomap.search.hypothesis import OFTEN, RULES, Hypothesis
 
-MOST = 20_000  # hypotheses of a step that are all looked at
-KEPT = 500  # of more of them: these, the first by the order
-SHOWN, BEGUN = 4, 3  # hypotheses of a step; those of them that later ones begin with, at most
+MOST = 20_000  # hypotheses of a step: up to so many, all are examined
+KEPT = 500  # of more hypotheses, so many are examined, the first in the order
+SHOWN, BEGUN = 4, 3  # hypotheses of a step, and of these the beginnings of later ones
 
 
 @dataclass
 class Step:
     """What was found at a step.
 
-    ``alive`` hypotheses after it, None if not all were looked at; ``shown`` some of them.
-    If all of those after the step before were looked at (``judged``), ``ended`` are those left
-    with no child, by rule; ``tried`` the arrivals, by the rule that refuses them, "" for the
-    children; ``foreseen`` is how many hypotheses said where the step arrives.
+    There are ``alive`` hypotheses after it; this is None if not all were examined. ``shown`` has
+    some of them. If all hypotheses after the step before were examined (``judged``), ``ended``
+    counts those without a child, by the rule that ended them; ``tried`` counts the arrivals, by the
+    rule that refuses them, and under "" the children; ``foreseen`` is the number of hypotheses that
+    determine where the step arrives.
     """
 
     alive: int | None = None
@@ -40,12 +44,15 @@ class Step:
 def replay(
     experience: Experience, query: Query, best: Sequence[Cube], watch: Watch
 ) -> tuple[list[Step], str | None]:
-    """The steps of an experience from 0, and why the last ones were not looked at, if so.
+    """Go through the steps of an experience from 0.
 
-    Shown after the last step are first the ``best`` maps, and after another one what those
-    shown after the next step begin with; then those of fewest paths, then places, then by the
-    dstates. After a step with more than ``MOST`` hypotheses only the descendants of the first
-    ``KEPT`` of that order are looked at.
+    After the last step, the ``best`` maps are shown first. After an earlier step, the beginnings of
+    the hypotheses that are shown after the next step come first. Then come those with the fewest
+    paths, then the fewest places, then in the order of the dstates. After a step with more than
+    ``MOST`` hypotheses, only the descendants of the first ``KEPT`` in that order are examined.
+
+    Returns:
+        The steps, and why the last ones were not examined, or None.
     """
     node = traversal.root(experience, query)
     steps = [Step() for _ in range(node.experience.steps + 1)]
@@ -89,18 +96,18 @@ def _walk(node: Hypothesis, steps: list[Step], first: list[list[Cube]], watch: W
 
 
 def _go_on(node: Hypothesis, children: list[Cube], after: Step) -> None:
-    """The children of a node, and what is refused there."""
+    """Find the children of a node, and what is refused there."""
     tried = list(node.tried())
     at = node.dstates
     children += [(*at, divmod(arrival, node.slots)) for arrival, rule in tried if rule is None]
     after.tried.update(rule or "" for _, rule in tried)
     after.foreseen += len(tried) == 1 and not node.rests and node.out() in node.links
-    if all(rule for _, rule in tried):  # the last one is the link's end, or a new place
+    if all(rule for _, rule in tried):  # the last one is the end of a link, or a new place
         after.ended[tried[-1][1] or ""] += 1
 
 
 def in_force(query: Query, experience: Experience) -> list[str]:
-    """The rules that can refuse something here, in the order in which they are tried."""
+    """List the rules that can refuse something here, in the order in which they are tried."""
     never = {
         "planarity": "planar" not in query.parts,
         "perpendicular": "perpendicular" not in query.parts,
@@ -119,9 +126,13 @@ def in_force(query: Query, experience: Experience) -> list[str]:
 def fate(
     experience: Experience, query: Query, at: Cube
 ) -> tuple[int, str, dict[str, list[Gateway]]]:
-    """How many children a hypothesis has, and if none, the rule that ended it; and the arrivals
-    that are refused, by rule. That at a new place is at gateway 0 of the place named by its
-    step."""
+    """Find out what becomes of a hypothesis.
+
+    Returns:
+        How many children it has; if it has none, the rule that ended it; and the arrivals that are
+        refused, by rule. An arrival at a new place is at gateway 0 of the place that has the number
+        of its step.
+    """
     node = traversal.root(experience, query)
     node.goto(at)
     if node.steps == node.experience.steps:

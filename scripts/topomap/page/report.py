@@ -1,4 +1,4 @@
-"""The page about explorations, in one file that loads nothing else."""
+"""The page about explorations, in one file that loads no other file."""
 
 import base64
 import hashlib
@@ -31,18 +31,21 @@ from topomap.runtime.version import VERSION
 from topomap.search.evidence import RULES as KNOWN
 from topomap.search.evidence import Evidence
 
-ENDERS = ("view", "landmark", "marker", *KNOWN, "bound")  # rules that can end a hypothesis
+ENDERS = ("view", "landmark", "marker", *KNOWN, "bound")  # the rules that can end a hypothesis
 FOLDER = Path(__file__).parent
-LARGER = 1.7  # than its units are the picture of a best map, where there is room
-ROOM = 2_000_000  # letters that small pictures of one exploration take, about
+LARGER = 1.7  # the scale of the picture of a best map, if there is room
+ROOM = 2_000_000  # letters: about so many for the small pictures of one exploration
 
 
 @dataclass(frozen=True)
 class Asked:
-    """What a page was asked for: the instances, the parts and limits of their maps, how many of
-    the best ones are drawn at most, within how many seconds, and the file of the maps that are
-    told of instead, if there is one; and what is ``known`` besides the instances, as options. All
-    this is told on the page as options of the command."""
+    """What a page was asked for.
+
+    It has the instances, the parts and limits of their maps, the largest number of the best maps to
+    draw, the number of seconds, and the file of the maps that are shown instead, if there is one;
+    and what is ``known`` besides the instances, as options. The page shows all this as options of
+    the command.
+    """
 
     instances: Sequence[str]
     query: Query
@@ -52,7 +55,7 @@ class Asked:
     known: Sequence[str] = ()
 
     def options(self, without: str = "") -> list[str]:
-        """The parts and limits, as options."""
+        """The parts and limits as options."""
         asked = self.query.parts - {without}
         flags = [f"--{part.replace('_', '-')}" for part in CHOSEN if part in asked]
         for name, value in (("bound", self.query.places), ("horizon", self.query.horizon)):
@@ -68,7 +71,7 @@ class Asked:
 
 
 def page(asked: Asked, made: Sequence[Chapter]) -> str:
-    """The page about explorations that were looked at."""
+    """Write the page about explorations that were examined."""
     import jinja2
 
     environment = jinja2.Environment(
@@ -110,7 +113,7 @@ def _hash(text: str) -> str:
 
 
 def _about(asked: Asked, number: int, about: Chapter) -> dict[str, Any]:
-    """What the template tells of an exploration."""
+    """Collect what the template tells of an exploration."""
     from markupsafe import Markup
 
     seen, last = about.seen, about.seen.steps
@@ -118,7 +121,9 @@ def _about(asked: Asked, number: int, about: Chapter) -> dict[str, Any]:
     log = [_log_line(seen, step) for step in range(last + 1)]
     room = ROOM
     steps = []
-    for step, found in reversed(list(enumerate(about.steps))):  # the best maps' are drawn first
+    for step, found in reversed(
+        list(enumerate(about.steps))
+    ):  # those of the best maps are drawn first
         shown: list[dict[str, Any]] = []
         for at in found.shown:
             if at in about.shapes and room > 0:
@@ -198,24 +203,24 @@ def _log_line(seen: Experience, step: int) -> dict[str, Any]:
 
 
 class Glyphs:
-    """Drawings by what they are: those that come again are written once."""
+    """Drawings by their content: a drawing that occurs several times is written once."""
 
     def __init__(self, prefix: str):
         self.prefix = prefix
         self.names: dict[str, str] = {}
 
     def use(self, body: str) -> str:
-        """What shows a drawing."""
+        """Refer to a drawing, which is written once."""
         name = self.names.setdefault(body, f"{self.prefix}m{len(self.names) + 1}")
         return f'<use href="#{name}"/>'
 
     def shared(self) -> str:
-        """The drawings."""
+        """The drawings that are referred to."""
         return "".join(f'<g id="{name}">{body}</g>' for body, name in self.names.items())
 
 
 def _shown(about: Chapter, at: Cube, number: int, glyphs: Glyphs) -> dict[str, Any]:
-    """A hypothesis of a step."""
+    """Describe a hypothesis of a step."""
     from markupsafe import Markup
 
     seen, drawn, step = about.seen, about.shapes[at], len(at) - 1
@@ -253,7 +258,7 @@ def _shown(about: Chapter, at: Cube, number: int, glyphs: Glyphs) -> dict[str, A
 
 
 def _last(drawn: Drawing, at: Cube) -> str:
-    """The link of the last step, to lie under the map."""
+    """Draw the link of the last step, which lies under the map."""
     if len(at) == 1:
         return ""
     return f'<path class="last" d="{svg.path(drawn.lines[at[-1]])}"/>'
@@ -270,7 +275,7 @@ def _note(drawn: Drawing | None) -> str:
 def _map(
     seen: Experience, scene: Scene, drawn: Drawing | None, agreed: Agreement
 ) -> dict[str, Any]:
-    """One of the best maps."""
+    """Describe one of the best maps."""
     from markupsafe import Markup
 
     world, number = scene.world, scene.number

@@ -1,7 +1,9 @@
-"""Beyond the paper's table: larger grids, and 4x4 without a bound, by depth-first search. The
-last level of the tree is counted by clingo too, where that ends in time, and by merging hypotheses
-that have the same future, unless maps are to be planar. Where there are too many maps for a search,
-merging alone counts them."""
+"""Beyond the paper's table: larger grids, and 4x4 without a bound, by depth-first search.
+
+The last level of the tree is also counted by clingo, where that ends in time, and, if maps need not
+be planar, by merging hypotheses that have the same future. Where there are too many maps for a
+search, only merging counts them.
+"""
 
 from collections.abc import Iterator
 from typing import Any
@@ -28,13 +30,17 @@ COLUMNS: list[tuple[int, int, int | None, bool]] = [
     (5, 4, 20, True),
     (5, 5, 25, True),
 ]
-MERGED = [(4, 5), (5, 4)]  # with any number of places, by merging alone
+MERGED = [(4, 5), (5, 4)]  # with any number of places, and only by merging
 
 
 def rows(
     crew: Crew, watch: Watch, journal: Journal, limit: float = 600
 ) -> Iterator[dict[str, Any]]:
-    """The rows of the table; clingo is given ``limit`` seconds for each. Raises Stopped."""
+    """Count the rows of the table; clingo gets ``limit`` seconds for each.
+
+    Raises:
+        Stopped: The work was cut short.
+    """
     for height, width, places, planar in COLUMNS:
         made = instance(grid(height, width), "snake")
         query = Query(frozenset(["planar"] if planar else []), places)
@@ -64,7 +70,7 @@ def rows(
 
 
 def _by_merging(made: Instance, query: Query, watch: Watch, journal: Journal) -> dict[str, int]:
-    """What is counted by merging."""
+    """Count what can be counted by merging."""
     for value in journal.known(1):
         return dict(value)
     figures = dict(merged(made.experience, query, watch))
@@ -75,7 +81,7 @@ def _by_merging(made: Instance, query: Query, watch: Watch, journal: Journal) ->
 def _by_clingo(
     made: Instance, query: Query, limit: float, watch: Watch, journal: Journal, crew: Crew
 ) -> dict[str, int]:
-    """The number of final maps, if clingo has it in ``limit`` seconds."""
+    """Count the final maps, if clingo can do that in ``limit`` seconds."""
     for value in journal.known(1):
         return dict(value)
     final: dict[str, int] = {}
@@ -83,6 +89,6 @@ def _by_clingo(
         with watch.deadline.earlier(limit):
             final = {"final": final_maps(made.experience, query, watch, crew)}
     except Stopped:
-        watch.tick()  # raises it again, if it was not for the limit
+        watch.tick()  # raises it again, unless the limit of clingo was the reason
     journal.keep(final)
     return final

@@ -36,8 +36,13 @@ def row(column: dict[str, Any], watch: Watch) -> dict[str, Any]:
 
 
 def rows(jobs: int, watch: Watch) -> Iterator[dict[str, Any]]:
-    """The rows of the table, each as soon as it is counted; the largest begin first.
-    Raises Stopped past the time limit, and when interrupted."""
+    """Count the rows of the table, and give each as soon as it is counted.
+
+    The largest ones begin first.
+
+    Raises:
+        Stopped: The time limit has passed, or the work was interrupted.
+    """
     with ThreadPoolExecutor(jobs) as pool:
         pending = [pool.submit(row, column, watch) for column in reversed(COLUMNS)]
         for done in as_completed(pending):
@@ -45,8 +50,7 @@ def rows(jobs: int, watch: Watch) -> Iterator[dict[str, Any]]:
 
 
 def differences(row: dict[str, Any]) -> list[str]:
-    """The cells in which a row differs from the paper, from what is expected, or from
-    another way to count it."""
+    """Find the cells in which a row differs from the paper or from another way to count it."""
     where = f"{row['environment']} {'with' if row['planarity'] else 'without'} planarity"
     return [
         f"{where}: {key} is {row[key]}, {source} has {figure}"
@@ -57,9 +61,10 @@ def differences(row: dict[str, Any]) -> list[str]:
 
 
 def table_text(rows: list[dict[str, Any]]) -> str:
-    """A table to read: for each figure ours, and below it the paper's."""
+    """Write a table to read, with our figures above those of the paper."""
 
     def line(word: str, key: str) -> list[str]:
+        """Write one line of the table."""
         cells = [row.get(key) for row in rows]
         return [word] + [_cell(cell) for cell in cells]
 

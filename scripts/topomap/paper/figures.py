@@ -35,9 +35,10 @@ PLANAR, ANY = ("planar", BLUE, "s--"), ("any", ORANGE, "o-")
 
 
 def figures(folder: Path, watch: Watch) -> dict[str, Callable[[], Figure]]:
-    """Each figure by name, to be made; ``folder`` holds the instances."""
+    """Name each figure, with the function that makes it; ``folder`` has the instances."""
 
     def of(name: str) -> Experience:
+        """Read an instance."""
         return read(folder / f"{name}.lp")
 
     return {
@@ -59,14 +60,18 @@ def figures(folder: Path, watch: Watch) -> dict[str, Callable[[], Figure]]:
 def all_scenes(
     experience: Experience, watch: Watch, *parts: str, places: int | None = None
 ) -> list[Scene]:
-    """All maps with these properties, or the best of them, in order."""
+    """Find all maps with these properties, or the best of them, in order."""
     found = solving.hypotheses(experience, Query(frozenset(parts), places), watch)
     proved = sorted(one.at for one in found if one and one.proved)
     return [Scene(experience.map_of(at), at, "") for at in proved]
 
 
 def best_scenes(experience: Experience, watch: Watch, *parts: str) -> list[Scene]:
-    """The optimal maps, or the best so far. Raises Stopped."""
+    """Find the optimal maps, or those that are best so far.
+
+    Raises:
+        Stopped: The work was cut short.
+    """
     found, fault = best_maps(experience, Query(frozenset(parts)), watch)
     if fault:
         raise Stopped(fault)
@@ -74,12 +79,16 @@ def best_scenes(experience: Experience, watch: Watch, *parts: str) -> list[Scene
 
 
 def titled(scene: Scene, caption: str) -> Scene:
+    """Give a scene a caption."""
     return replace(scene, caption=caption)
 
 
 def first(watch: Watch) -> Figure:
-    """For the first page: what a walk sees, place by place, two of the maps that are consistent
-    with it, and the one that is closed, which is the real one."""
+    """Draw the figure of the first page.
+
+    It shows what a walk sees, place by place; two of the maps that are consistent with it; and the
+    closed map, which is the real one.
+    """
     made = instance(grid(2, 3), "EESWWNES")
     found = all_scenes(made.experience, watch)
     (real,) = [scene for scene in found if not scene.world.pending()]
@@ -113,7 +122,7 @@ def first(watch: Watch) -> Figure:
 
 
 def _log(axes: Any, experience: Experience) -> None:
-    """What is seen after each step, and how the agent then leaves."""
+    """Draw what is seen after each step, and how the agent then leaves."""
     columns, wide, high = 3, 1.25, 1.12
     rows = -(-len(experience.views) // columns)
     for step, view in enumerate(experience.views):
@@ -139,9 +148,15 @@ def _star(
     turn: int | None,
     begins: bool,
 ) -> list[Points]:
-    """A place as the agent sees it: its gateways, the one stood at with the agent (below, for it
-    has that one behind it after a travel; above where an exploration begins), and an arrow
-    through the gateway that it turns to. Returns the directions of the slots, as vectors."""
+    """Draw a place as the agent sees it.
+
+    It shows the gateways, the agent at its gateway, and an arrow through the gateway to which it
+    turns. The gateway of the agent is below, because it is behind the agent after a travel, or
+    above where an exploration begins.
+
+    Returns:
+        The directions of the slots, as vectors.
+    """
     first = np.pi / 2 if begins else -np.pi / 2
     angles = [first - 2 * np.pi * slot / slots for slot in range(slots)]
     outs = [np.array([np.cos(angle), np.sin(angle)]).round(6) for angle in angles]
@@ -163,7 +178,7 @@ def _star(
 
 
 def place() -> Figure:
-    """How the slots of a place are numbered: at the start, and after a travel."""
+    """Draw how the slots of a place are numbered, at the start and after a travel."""
     panels: list[tuple[str, set[int], int, str]] = [
         ("at the start you choose slot 0", {0, 1}, 0, "view(0,0). view(0,1).  turn(1,0)."),
         (
@@ -196,7 +211,7 @@ def place() -> Figure:
 
 
 def figure1(experience: Experience, watch: Watch) -> Figure:
-    """The paper's Figure 1: the 3x3 grid, and the two maps that no exploration tells apart."""
+    """Draw the paper's Figure 1: the 3x3 grid, and the two maps that no exploration tells apart."""
     made = instance(grid(3, 3), "snake")
     real = Scene(experience.map_of(made.truth), (), "")
     planar, other = sorted(best_scenes(experience, watch), key=lambda scene: scene.world.genus())
@@ -210,7 +225,7 @@ def figure1(experience: Experience, watch: Watch) -> Figure:
 
 
 def figure3(watch: Watch) -> Figure:
-    """The paper's Figure 3: next(e1) = pred(rev(e1)), and the walks round three faces."""
+    """Draw the paper's Figure 3: next(e1) = pred(rev(e1)), and the walks round three faces."""
     made = instance(grid(2, 3), "snake")
     (found,) = all_scenes(made.experience, watch, "planar", "closed", "perpendicular")
     scene = replace(found, at=())
@@ -251,7 +266,7 @@ def figure3(watch: Watch) -> Figure:
 
 
 def _beside(line: Points, aside: float) -> Points:
-    """A straight line, moved to its right and shortened."""
+    """Shift a straight line to its right, and shorten it."""
     a, b = line[0], line[-1]
     ahead = (b - a) / np.linalg.norm(b - a)
     right = aside * np.array([ahead[1], -ahead[0]])
@@ -265,7 +280,7 @@ def _arrow(axes: Any, line: Points, colour: str) -> None:
 
 
 def growth(watch: Watch) -> Figure:
-    """Beside the paper's Figure 4: how the tree grows, step by step."""
+    """Draw, for the paper's Figure 4, how the tree grows step by step."""
     rows = [(column, figure4.row(column, watch)["per_step"]) for column in figure4.COLUMNS]
     with mpl.rc_context(sheet.STYLE):
         figure = _figure(9, 3.2)
@@ -290,7 +305,7 @@ def growth(watch: Watch) -> Figure:
 
 
 def equation1(experience: Experience, watch: Watch) -> Figure:
-    """Equation (1): of the children of each branching node, the part that is planar."""
+    """Draw equation (1): which share of the children of each branching node is planar."""
     node = traversal.root(experience, Query(frozenset(["planar"]), 16))
     nodes = list(branching.branching(node, watch))
     panels: list[tuple[str, list[tuple[Fraction | None, Fraction]]]] = [
@@ -321,14 +336,18 @@ def equation1(experience: Experience, watch: Watch) -> Figure:
 
 
 def figure5(experience: Experience, watch: Watch) -> Figure:
-    """The paper's Figure 5: the real 4x4 map, one of the 255 others that are closed and
-    perpendicular, and the two optimal ones."""
+    """Draw the paper's Figure 5.
+
+    It has the real 4x4 map, one of the 255 others that are closed and perpendicular, and the two
+    optimal ones.
+    """
     square = all_scenes(experience, watch, "closed", "perpendicular", places=16)
     (real,) = [scene for scene in square if scene.world.genus() == 0]
     others = [scene for scene in square if scene.world.genus() > 0]
     optimal = best_scenes(experience, watch)
 
     def is_told(scene: Scene) -> bool:
+        """Tell whether some walk can tell the map from the real one."""
         return not scene.world.indistinguishable(scene.at[-1], real.world, real.at[-1])
 
     told, never = sorted(optimal, key=is_told, reverse=True)
@@ -344,7 +363,7 @@ def figure5(experience: Experience, watch: Watch) -> Figure:
 
 
 def circumscription(watch: Watch) -> Figure:
-    """A walk of four steps of which two maps are circumscribed, and one of these is smaller."""
+    """Draw a walk of four steps with two circumscribed maps, one of which is smaller."""
     fork = frozenset([0, 2, 4])
     experience = Experience(6, (fork,) * 5, (4, 2, 2, 2))
     found = [*circumscribed(experience, Query(), watch)]
@@ -364,7 +383,7 @@ def _told(is_told: bool) -> str:
 
 
 def manhattan(tours: list[Experience], watch: Watch) -> Figure:
-    """A piece of Manhattan: what is thought after 20 and 40 steps, and what is so."""
+    """Draw a piece of Manhattan: the hypotheses after 20 and 40 steps, and the real map."""
     (whole,) = all_scenes(tours[-1], watch, "closed", "planar", "perpendicular")
     real = titled(whole, f"the real map, a tour of {tours[-1].steps} steps")
     panels: list[Scene] = []

@@ -19,7 +19,7 @@ from topomap.solver.circumscription import circumscribed
 from topomap.solver.share import ALONE, Crew
 from topomap.solver.solving import count, demand_cover
 
-LARGE = 10_000  # a tree with a level of more hypotheses is counted cube by cube
+LARGE = 10_000  # a level with more hypotheses than this is counted cube by cube
 KEYS = ("nodes", "maps_built", "final", "closed", "closed_text", "optimal", "perpendicular")
 WORDS = {
     "nodes": "Search-tree nodes built",
@@ -34,20 +34,25 @@ WORDS = {
 FINAL = {
     "closed": ("travelled",),
     "closed_text": ("closed",),
-    "optimal": ("closed", "boundary", "minimal"),  # where a closed map has no exception
+    "optimal": ("closed", "boundary", "minimal"),  # if some closed map has no exceptions
     "perpendicular": ("closed", "perpendicular"),
 }
-MERGED: dict[str, tuple[str, ...]] = {  # what can be counted by merging, the quickest first
+MERGED: dict[str, tuple[str, ...]] = {  # what can be counted by merging; the fastest comes first
     "perpendicular": FINAL["perpendicular"],
     "closed_text": FINAL["closed_text"],
     "final": (),
 }
-EXCEPTIONAL = ("closed", "exceptions", "minimal")  # what is optimal where each has some
+EXCEPTIONAL = ("closed", "exceptions", "minimal")  # the same if each closed map has exceptions
 
 
 def merged(experience: Experience, query: Query, watch: Watch) -> Iterator[tuple[str, int]]:
-    """Figures of the maps of a query, each with its name, counted by merging; those come first that
-    are counted soonest. Raises InputError if there is what keeps hypotheses from being merged."""
+    """Count figures of the maps of a query by merging.
+
+    Each figure comes with its name, and those that are counted fastest come first.
+
+    Raises:
+        InputError: Something keeps hypotheses from being merged.
+    """
     for key, parts in MERGED.items():
         watch.title(WORDS[key].strip(" ()").lower())
         *_, number = Merging(experience, query.having(*parts)).counts(watch)
@@ -63,20 +68,22 @@ def tree(
     crew: Crew = ALONE,
     circumscribe: bool = False,
 ) -> None:
-    """Fill in ``result``, by clingo alone (semantics: "What Figure 4 counts"):
+    """Count the search tree by clingo alone (semantics: "What Figure 4 counts").
 
-    ``per_step``: hypotheses after each step, from 0; ``nodes``: their sum;
-    ``maps_built``: those whose last step added a link, and the root; ``final``: those after the
-    last step; of these ``closed``: every path holds two places, as the table counts it;
-    ``closed_text``: no pending gateway; ``optimal``; ``perpendicular``: closed and
-    qualitatively perpendicular; if asked for, ``circumscribed``, and of which kind. What the time
-    limit cuts off stays None.
+    ``result`` gets these figures. ``per_step`` has the number of hypotheses after each step, from
+    0, and ``nodes`` is their sum. ``maps_built`` counts those whose last step added a link, and the
+    root. ``final`` counts those after the last step; of these, ``closed`` counts those in which
+    every path has two places, as the table does, ``closed_text`` those without a pending gateway,
+    ``optimal`` the optimal ones, and ``perpendicular`` those that are closed and qualitatively
+    perpendicular. If it is asked for, ``circumscribed`` is counted, too, with its kind. What the
+    time limit cuts off stays None.
 
-    A node of the tree at depth t is an answer set with ``-c horizon=t``. Large levels are
-    counted cube by cube, each a unit of the journal.
+    A node of the tree at depth t is an answer set with ``-c horizon=t``. Large levels are counted
+    cube by cube, and each cube is a unit of the journal.
     """
 
     def counted(units: list[Unit]) -> Iterator[tuple[int, int]]:
+        """Give the values of units, from the journal or newly counted."""
         known = journal.known(len(units))
         yield from known
         found = watch.found
@@ -88,7 +95,7 @@ def tree(
     maps_built = 0
 
     def level(pairs: Iterator[tuple[int, int]]) -> int:
-        """Take in the pairs of a step; how many hypotheses there are."""
+        """Collect the pairs of a step, and return the number of hypotheses."""
         nonlocal maps_built
         numbers = list(pairs)
         maps_built += sum(grown for _, grown in numbers)
@@ -101,7 +108,7 @@ def tree(
     monotone = query.parts <= set(PRUNING)
     last = experience.steps if query.horizon is None else min(query.horizon, experience.steps)
     branches: list[Cube] = [()]
-    cubes: list[Cube] = []  # to come in its place, at a step
+    cubes: list[Cube] = []  # they replace the branches after a step
     depth = step = 0
     while step <= last:
         watch.title(f"step {step} of {last}")
@@ -114,7 +121,7 @@ def tree(
         if not level(counted([(replace(query, horizon=step), cube, True) for cube in branches])):
             branches = [] if monotone else branches
         step += 1
-    # All that is left is shared out at once: nobody waits for the end of a step.
+    # All that is left is shared out at once, so that no process waits for the end of a step.
     steps = range(step, last + 1)
     units = [(replace(query, horizon=step), cube, True) for step in steps for cube in branches]
     asked = {key: query.having(*properties) for key, properties in FINAL.items()}
@@ -145,7 +152,7 @@ def tree(
 
 
 def final_maps(experience: Experience, query: Query, watch: Watch, crew: Crew) -> int:
-    """The hypotheses after the last step, by clingo."""
+    """Count the hypotheses after the last step by clingo."""
     branches, depth = traversal.cubes(experience, query)
     demand_cover(experience, query, watch, branches, depth)
     units = [(query, cube, False) for cube in branches]
@@ -162,8 +169,11 @@ def _counted(experience: Experience, unit: Unit, watch: Watch | None) -> tuple[i
 
 @dataclass
 class Tally:
-    """The same figures, of nodes that a search passes: add each, and merge the tallies of
-    branches of the tree. ``cost`` is that of the optimal maps so far: exceptions, paths, places."""
+    """The same figures of nodes that a search visits.
+
+    Each node is added, and the tallies of branches of the tree are merged. ``cost`` is that of the
+    optimal maps so far: exceptions, paths, places.
+    """
 
     steps: int
     per_step: list[int] = field(default_factory=list)
@@ -191,7 +201,7 @@ class Tally:
                 self._best((sum(1 for _ in node.map.exceptions()), *node.cost), 1)
 
     def merge(self, other: "Tally") -> None:
-        """Count what another tally has counted."""
+        """Add what another tally has counted."""
         self.per_step = [a + b for a, b in zip(self.per_step, other.per_step, strict=True)]
         self.maps_built += other.maps_built
         self.closed += other.closed
@@ -201,24 +211,24 @@ class Tally:
             self._best(tuple(other.cost), other.optimal)
 
     def _best(self, cost: tuple[int, ...], number: int) -> None:
-        """Take in so many optimal maps."""
+        """Add a number of optimal maps of a cost."""
         if self.cost is None or cost <= self.cost:
             self.optimal = number + (self.optimal if cost == self.cost else 0)
             self.cost = cost
 
     def told(self, fault: str | None, order: str) -> dict[str, Any]:
-        """What is known of these figures if the search, in this order, was cut for that fault."""
+        """Tell what is known of these figures if a search in this order was cut short."""
         figures = self.figures()
-        if fault and order == "breadth":  # in the midst of the last level with a node
+        if fault and order == "breadth":  # the last level that has a node is not complete
             whole = sum(map(bool, self.per_step)) - 1
             return dict.fromkeys(KEYS) | {"per_step": self.per_step[: max(0, whole)]}
-        if fault:  # of no step all nodes are known; others may be better than the best so far
+        if fault:  # no level is complete, and an unknown map may be better than the best so far
             least = {key: figures[key] for key in (*KEYS, "per_step") if key != "optimal"}
             return dict.fromkeys((*KEYS, "per_step")) | {"at_least": least}
         return figures
 
     def figures(self) -> dict[str, Any]:
-        """What ``tree`` gives."""
+        """The figures, named as ``tree`` names them."""
         counted = {key: getattr(self, key) for key in FINAL}
         return {
             "nodes": sum(self.per_step),
@@ -232,8 +242,11 @@ class Tally:
 def searched(
     experience: Experience, query: Query, watch: Watch, journal: Journal, crew: Crew = ALONE
 ) -> Tally:
-    """The figures of the tree by depth-first search: of its top, and of the branches below it,
-    each a unit of the journal."""
+    """Count the tree by depth-first search.
+
+    The top of the tree is counted first. Then come the branches below it, each of which is a unit
+    of the journal.
+    """
     branches, _ = traversal.cubes(experience, query, 256)
     node = traversal.root(experience, query)
     tally = Tally(node.experience.steps)
@@ -251,7 +264,7 @@ def searched(
 
 
 def _branch(experience: Experience, query: Query, cube: Cube, watch: Watch | None) -> Tally:
-    """The figures of the tree from a node down."""
+    """Count the tree from a node down."""
     node = traversal.root(experience, query)
     node.goto(cube)
     tally = Tally(node.experience.steps)
@@ -261,8 +274,10 @@ def _branch(experience: Experience, query: Query, cube: Cube, watch: Watch | Non
 
 
 def figures_text(figures: Mapping[str, Any], fault: str | None) -> str:
-    """The figures to read; of a search that was cut, ``at_least`` holds what the nodes met until
-    then come to."""
+    """Write the figures to read.
+
+    Of a search that was cut short, ``at_least`` has the figures of the nodes that were visited.
+    """
     least = figures.get("at_least")
     told, more = (least, "at least ") if least else (figures, "")
     merging = figures.get("way") == "merging"

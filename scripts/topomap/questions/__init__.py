@@ -1,1 +1,1 @@
-"""What can be asked of the maps of an experience."""
+"""The questions that can be asked about the maps of an experience."""

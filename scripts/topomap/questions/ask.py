@@ -1,8 +1,9 @@
 """Whether a statement holds in all maps, in some or in none.
 
-It holds in some map if there is an answer with it assumed, and in all if there is none with its
-negation assumed. So no maps are enumerated; and what a map shows of other statements is not
-asked again. Of the best maps, first what the best ones cost is found, and is then a bound.
+A statement holds in some map (it is a brave consequence) if there is an answer under the assumption
+that it holds. It holds in all maps (it is a cautious consequence) if there is no answer under the
+assumption that it does not. So no maps are enumerated, and what a map shows about other statements
+is not asked again. For the best maps, their cost is found first, and is then a bound.
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -21,14 +22,17 @@ from topomap.runtime.watch import Watch
 from topomap.solver.programs import Program, calls
 from topomap.solver.solving import preferences
 
-BUDGETS = ("1000", "30000", "umax")  # conflicts: what is hard to settle holds up nothing else
+BUDGETS = ("1000", "30000", "umax")  # conflicts: a hard question does not delay the others
 Literal = tuple[str, bool]  # a term of a statement, and whether it holds
 
 
 @dataclass
 class Known:
-    """What is known of a statement: a map in which it holds, one in which it does not, and
-    whether it is proved that there is none."""
+    """What is known of a statement.
+
+    It has a map in which the statement holds, a map in which it does not, and whether it is proved
+    that there is no such map.
+    """
 
     statement: Statement
     witness: Found | None = None
@@ -38,13 +42,13 @@ class Known:
 
     @property
     def holds(self) -> str | None:
-        """In all maps, some or none, if that is settled."""
+        """Whether the statement holds in all maps, some or none, if that is settled."""
         if self.always or self.never:
             return "all" if self.always else "none"
         return "some" if self.witness and self.counter else None
 
     def words(self) -> str:
-        """The same in words; if it is not settled, what is known."""
+        """What is known, in words."""
         if self.holds:
             note = self.statement.note
             return f"in {self.holds}" + (f": {note}" if note else "")
@@ -54,7 +58,7 @@ class Known:
 
 
 class Inquiry:
-    """What is known of statements, and of which maps: ``some`` tells whether there are any."""
+    """What is known of statements about certain maps; ``some`` tells whether there are any maps."""
 
     def __init__(self, asked: Sequence[Statement]):
         self.each = [Known(statement) for statement in asked]
@@ -64,14 +68,19 @@ class Inquiry:
         self.cost: tuple[int, ...] = ()
 
     def settle(self, experience: Experience, query: Query, optimal: bool, watch: Watch) -> None:
-        """Ask for all of them. Raises Stopped at the time limit, or out of memory."""
+        """Settle all statements.
+
+        Raises:
+            Stopped: The time limit has passed, or memory ran out.
+        """
         if not optimal:
             self._settle(experience, query, query.kind, watch)
             return
         for closed, kind in ((("closed",), "optimal"), ((), "best so far")):
             for preferred, before in preferences(query):
                 asked = query.having(*closed, preferred, "minimal")
-                self.some, self.kind = None, None  # that there is none of a kind does not settle it
+                # No map of one kind does not mean that there is no map.
+                self.some, self.kind = None, None
                 self._settle(experience, asked, kind, watch)
                 if self.some:
                     self.cost = (*before, *self.cost)
@@ -106,7 +115,7 @@ class Inquiry:
                     known.always = True
 
     def lines(self, experience: Experience, fault: str | None) -> Iterator[str]:
-        """What is known, to read; ``fault`` says why not all is settled."""
+        """What is known, as lines to read; ``fault`` says why not everything is settled."""
         if self.some is False:
             yield "no map is consistent with it"
             return
@@ -122,9 +131,10 @@ class Inquiry:
             yield f"partial: {fault}"
 
     def document(self, experience: Experience, query: Query, optimal: bool) -> dict[str, Any]:
-        """What is known, as JSON; whole maps as ``solve`` writes them."""
+        """What is known, as JSON, with whole maps as ``solve`` writes them."""
 
         def whole(found: Found | None) -> Any:
+            """A map as ``solve`` writes it."""
             return found and map_json(experience.map_of(found.at), found.at)
 
         return {
@@ -152,13 +162,17 @@ class Inquiry:
 def _work(
     terms: Sequence[str], optimizes: bool, program: Program, put: Callable[[Any], bool]
 ) -> None:
-    """Puts maps, each with what it costs and what holds in it; literals that are so in no map,
-    without one; or that there is no map."""
+    """Settle statements by clingo, and put what is found.
+
+    Put are maps, each with its cost and what holds in it; literals that hold in no map; or that
+    there is no map.
+    """
     seen: set[Literal] = set()
     cost: tuple[int, ...] = ()
     going = True
 
     def take(model: clingo.Model) -> bool:
+        """Put a map."""
         nonlocal cost, going
         if optimizes and not cost and not model.optimality_proven:
             return True

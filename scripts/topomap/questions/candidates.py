@@ -1,6 +1,5 @@
-"""The maps among which the real one may be: those between which a further walk is to decide."""
+"""The maps among which the real one may be, which a further walk is to tell apart."""
 
-import difflib
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -14,6 +13,7 @@ from topomap.model.query import Query
 from topomap.model.vocabulary import RELAXING
 from topomap.questions.standings import Standing, standing
 from topomap.runtime.errors import InputError, printable
+from topomap.runtime.near import nearest
 from topomap.runtime.watch import Attempt, Watch
 from topomap.solver import solving
 from topomap.solver.enumeration import best_maps
@@ -23,13 +23,13 @@ PARTS_OF = {
     "optimal": (),
     "closed": ("closed",),
     "perpendicular": ("closed", "perpendicular"),
-}  # the kinds of maps, and the parts that they have; of optimal ones see best_maps
-GIVEN = "given"  # what a map is said to be that the caller has
+}  # the kinds of maps, and their parts; best_maps gives the optimal ones
+GIVEN = "given"  # the kind of a map that the caller gives
 
 
 @dataclass(frozen=True)
 class Candidate:
-    """A map in question: the dstate after each step, and what it is."""
+    """A map in question: the dstate after each step, and the kind of the map."""
 
     at: At
     of: str
@@ -37,8 +37,11 @@ class Candidate:
 
 @dataclass(frozen=True)
 class Candidates:
-    """The maps in question, each once, in order; ``fault`` says why they may not be all.
-    ``every``: there are no others of the kinds that were asked for."""
+    """The maps in question, each once, in order.
+
+    ``fault`` says why they may not be all. ``every`` tells that there are no others of the kinds
+    that were asked for.
+    """
 
     experience: Experience
     each: tuple[Candidate, ...]
@@ -46,12 +49,14 @@ class Candidates:
     fault: str | None = None
 
     def standings(self) -> list[Standing]:
-        """The maps, and where the agent stands in each."""
+        """The maps, each with the dstate of the agent."""
         return [standing(self.experience, one.at) for one in self.each]
 
     def facts(self, marker: bool = False) -> str:
-        """The maps as facts for ``encodings/explore.lp`` and its like; ``marker``: the agent
-        carries one."""
+        """The maps as facts for ``encodings/explore.lp`` and similar programs.
+
+        With ``marker`` the agent carries a marker.
+        """
         lines = [self.experience.facts().rstrip()]
         for number, one in enumerate(self.each, 1):
             lines.append(f"% map {number}: {printable(one.of)}")
@@ -69,7 +74,7 @@ class Candidates:
         return f"{words.number(len(self.each), 'map')}{found} ({of})"
 
     def lack(self) -> str:
-        """What to say if there is none."""
+        """The message if there are no maps."""
         if self.fault:
             return f"no map found yet; partial: {self.fault}"
         return "no such map is consistent with it"
@@ -82,9 +87,14 @@ def gather(
     among: Sequence[str | At],
     watch: Watch,
 ) -> Candidates:
-    """The maps of an experience, the beginning of a whole one, that are named by their kind (one
-    of PARTS_OF) or by a file, or are given. Raises InputError where one is no map of it, or
-    where bearings are not exact: then it is not told what two maps predict differently."""
+    """Gather the candidate maps of an experience, which is the beginning of a whole one.
+
+    They are named by their kind (one of PARTS_OF) or by a file, or are given as maps.
+
+    Raises:
+        InputError: One is not a map of the experience; or bearings are not exact, because it is
+            then not known what two maps predict differently.
+    """
     if experience.tolerance:
         raise InputError(
             "topomap explore: maps predict exact bearings, so a tolerance cannot be asked for"
@@ -117,22 +127,25 @@ def gather(
 
 
 def _of_kind(kind: str, whole: Experience, query: Query, watch: Watch) -> Iterable[At]:
-    """All maps of a kind."""
+    """Find all maps of a kind."""
     having = query.having(*PARTS_OF[kind])
     return (one.at for one in solving.hypotheses(whole, having, watch) if one is not None)
 
 
 def _misspelt(name: str) -> str | None:
-    """The kind of maps that was meant, if a name is nearly that of one, and of no file."""
-    near = difflib.get_close_matches(name[:20], PARTS_OF, 1, 0.8)
-    return near[0] if near and not Path(name).exists() else None
+    """The kind of maps that was probably meant by a name that is not that of a file."""
+    near = nearest(name, PARTS_OF, 0.8)
+    return near if near and not Path(name).exists() else None
 
 
 def _of_file(
     path: str, whole: Experience, experience: Experience, watch: Watch, relaxed: Sequence[str]
 ) -> Iterator[At]:
-    """The maps of a file, cut to the experience. Raises InputError if one is none of its
-    hypotheses."""
+    """Read the maps of a file, cut to the experience.
+
+    Raises:
+        InputError: One is not a hypothesis of the experience.
+    """
     if near := _misspelt(path):
         raise InputError(f"{path}: no such file or directory; did you mean {near}?")
     documents = read_maps(path)

@@ -1,10 +1,12 @@
-"""Reasons none of which can be spared: the unsatisfiable cores that clingo gives, made small,
-and verified by a map that breaks each.
+"""Minimal unsatisfiable cores: sets of reasons each of which is needed.
 
-A reason is single, such as ``view(7,1)``: the views after steps 7 and 1 differ, so they are not of
-one place. Or it is gathered: a whole rule, such as ``planarity``, or what is seen after one step,
-such as ``view(7)``. A single reason is in force as long as all gathered ones are of which it is a
-part: ``view(7,1)`` is a part of ``view(7)`` and of ``view(1)``.
+clingo gives unsatisfiable cores. They are made smaller, and each reason is verified by a map that
+breaks only this one.
+
+A reason may be single, such as ``view(7,1)``: the views after steps 7 and 1 differ, so they are not
+of one place. Or it may be gathered: a whole rule, such as ``planarity``, or all that is seen after
+one step, such as ``view(7)``. A single reason is in force if all gathered ones are in force of
+which it is a part: ``view(7,1)`` is a part of ``view(7)`` and of ``view(1)``.
 """
 
 import math
@@ -30,30 +32,31 @@ from topomap.runtime.watch import Stopped
 from topomap.solver.programs import Program
 from topomap.solver.threads import Put
 
-REASON_ORDERS = 12  # in which reasons are tried, at most
-NEAR = -1  # the order in which reasons whose steps are near to each other are spared last
-CONFLICTS, CALLS = 3_000, 500  # of the solver, until no further order is tried
-TIDYING = 100  # reasons that are tried, so that a map breaks few others
-GROWING = 60  # conflicts, for each gathered reason that is tried so that a map breaks few others
+REASON_ORDERS = 12  # the largest number of orders
+NEAR = -1  # the order that removes reasons with neighbouring steps last
+CONFLICTS, CALLS = 3_000, 500  # the solver's work after which no further order is tried
+TIDYING = 100  # so many reasons are tried so that a map breaks few others
+GROWING = 60  # conflicts for each gathered reason that is tried for the same purpose
 
 
 def dstates(symbols: Sequence[clingo.Symbol]) -> tuple[DState, ...]:
+    """The dstate after each step, from the atoms of an answer."""
     steps = sorted([a.number for a in atom.arguments] for atom in symbols if atom.name == "at")
     return tuple((place, slot) for _, place, slot in steps)
 
 
 class Unsettled(Exception):
-    """A call of the solver came to the end of its conflicts."""
+    """A call of the solver has used up its conflicts."""
 
 
 class Given:
-    """A program in which reasons may be given up, solved with some of them in force."""
+    """A program with reasons that may be given up, solved with some of them in force."""
 
     def __init__(self, program: Program, assumed: Sequence[tuple[clingo.Symbol, bool]]):
         self.control, self.assumed = program.control, list(assumed)
         settings: Any = self.control.configuration.solve
         settings.models, settings.opt_mode = 1, "ignore"
-        program.solve(())  # it grounds
+        program.solve(())  # this grounds the program
         atoms = self.control.symbolic_atoms.by_signature("waived", 1)
         literals = {str(atom.symbol.arguments[0]): -atom.literal for atom in atoms}
         self.literals = {name: literals[name] for name in sorted(literals, key=rank)}
@@ -61,26 +64,35 @@ class Given:
         self.name(gather=False)
 
     def name(self, *, gather: bool) -> None:
-        """Speak from now on of gathered reasons, or of single ones."""
+        """Use gathered reasons, or single ones, from now on."""
         self.gather = gather
         self.of = {name: gathered(name) if gather else (name,) for name in self.literals}
         self.names = sorted({one for names in self.of.values() for one in names}, key=rank)
         self.conflicts = self.calls = 0
 
     def in_force(self, names: Sequence[str]) -> list[str]:
-        """The single reasons that are in force as long as these are, in their order, on which
-        it depends what clingo blames."""
+        """The single reasons that are in force with these reasons.
+
+        They are in order, because what clingo blames depends on it.
+        """
         rank_of = {name: number for number, name in enumerate(names)}
         kept = [name for name, of in self.of.items() if rank_of.keys() >= {*of}]
         return sorted(kept, key=lambda name: max(rank_of[one] for one in self.of[name]))
 
     def core(self, names: Sequence[str], limit: int | None = None) -> list[str] | None:
-        """None if there is a map with these in force, of which ``waived`` then has the single
-        reasons that it breaks; else some of them with which there is none. Raises Unsettled
-        where that takes more conflicts than the limit."""
+        """Find an unsatisfiable core of these reasons.
+
+        Returns:
+            Some of them with which there is no map; or None if there is a map with all of them, and
+            then ``waived`` has the single reasons that it breaks.
+
+        Raises:
+            Unsettled: It takes more conflicts than the limit.
+        """
         used: list[int] = []
 
         def take(model: clingo.Model) -> None:
+            """Note which reasons a map breaks."""
             shown = model.symbols(shown=True)
             self.waived = {str(one.arguments[0]) for one in shown if one.name == "waived"}
 
@@ -102,8 +114,15 @@ class Given:
     def grown(
         self, names: Sequence[str], without: str | None = None, most: float = math.inf
     ) -> list[str]:
-        """Of reasons with which there is a map, that of the last call, these and others that a map
-        allows, too, but for one. Each is tried with few conflicts, and none after so many."""
+        """Extend satisfiable reasons by others.
+
+        There is a map with ``names``, the map of the last call. Others are added as long as a map
+        allows them all; the reason ``without`` is left out. Each is tried with few conflicts, and,
+        after ``most`` conflicts in all, without asking the solver.
+
+        Returns:
+            The reasons.
+        """
         kept, end = list(names), self.conflicts + most
         for name in self.names:
             if name in kept or name == without:
@@ -125,8 +144,10 @@ class Given:
         return [*self.assumed, *(self.literals[name] for name in self.in_force(names))]
 
     def spare(self, names: list[str], demands: bool, limit: int | None = None) -> list[str]:
-        """The reasons but for kinds that can be spared, the last ones first: kinds of what is
-        demanded, or the others; with so many conflicts for each kind, at most."""
+        """Remove whole kinds of reasons that are not needed, the last kinds first.
+
+        They are kinds of demands, or all others. Each kind is tried with at most so many conflicts.
+        """
         ranks = {kind_of(name): rank(name)[0] for name in names}
         for kind in sorted(ranks, key=ranks.__getitem__, reverse=True):
             spared = [name for name in names if kind_of(name) != kind]
@@ -136,8 +157,13 @@ class Given:
         return names
 
     def broken(self, names: Sequence[str], without: str) -> tuple[clingo.Symbol, ...]:
-        """What is so in a map with these in force, with which there is one, as the last call told,
-        and another one not, and few of all others given up."""
+        """Find a map with these reasons in force, except one, in which few others are broken.
+
+        The last call has shown that there is such a map.
+
+        Returns:
+            What holds in the map.
+        """
         if self.gather:
             return self._model(self.grown(names, without, GROWING))
         others = [name for name in self.names if name not in names and name != without]
@@ -152,10 +178,11 @@ class Given:
         return self._model([*names, *others])
 
     def _model(self, names: Sequence[str]) -> tuple[clingo.Symbol, ...]:
-        """What is so in a map with these in force."""
+        """Find a map with these reasons in force, and return what holds in it."""
         found: list[tuple[clingo.Symbol, ...]] = []
 
         def take(model: clingo.Model) -> None:
+            """Note what holds in the map."""
             found.append(tuple(model.symbols(atoms=True)))
 
         settings: Any = self.control.configuration.solve
@@ -167,8 +194,10 @@ class Given:
 
 
 def find_reasons(assumed: Sequence[tuple[clingo.Symbol, bool]], program: Program, put: Put) -> None:
-    """Puts single reasons that suffice, fewer and fewer; at last some of which none can be spared.
-    With each it tells that they are not gathered, nor known to be the fewest."""
+    """Put single reasons that suffice, fewer and fewer; the last ones are all needed.
+
+    With each set it is put that they are not gathered, and not known to be the fewest.
+    """
     given = Given(program, assumed)
     best = reduced(given, lambda names: put((False, tuple(names), False)))
     put((False, tuple(best or ()), False))
@@ -182,18 +211,20 @@ def reduced(
     limit: int | None = None,
     names: Sequence[str] | None = None,
 ) -> list[str] | None:
-    """Reasons none of which can be spared, tried in several orders: those of the order that leaves
-    the fewest, and of as many those that have the fewest gathered ones of one step.
+    """Reduce reasons to a minimal unsatisfiable core, trying several orders.
+
+    The result is the smallest core of these orders. Of cores of one size, it is the one with the
+    fewest gathered reasons of one step.
 
     Parameters:
-        given: what they are of; with all of them there is no map.
-        tell: is told the reasons of the first order that suffice, and whether to go on.
-        most: how many reasons are wanted at most; an order is left as soon as it is known to
-            need more.
-        orders: the numbers of the orders that are tried.
-        limit: of the conflicts with which a reason is tried; where they are not enough, it is left
-            to ``verify`` whether it can be spared.
-        names: of which they are; without it all.
+        given: The program of the reasons. With all of them in force there is no map.
+        tell: A function that is told the first reasons that suffice, and whether to go on.
+        most: The largest number of reasons that is wanted. An order is left as soon as it is known
+            to need more.
+        orders: The numbers of the orders to try.
+        limit: The number of conflicts with which a reason is tried. If they are not enough,
+            ``verify`` finds out whether the reason is needed.
+        names: The reasons to begin with; by default all.
 
     Returns:
         The reasons; None if each of the orders needs more than are wanted.
@@ -202,13 +233,13 @@ def reduced(
     whole = given.spare(list(names), demands=True, limit=limit)
     best: list[str] | None = None
     for number in orders:
-        # The fewest kinds are not always the fewest reasons: other orders have all kinds.
+        # The fewest kinds are not always the fewest reasons, so other orders begin with all kinds.
         kept = whole if number else given.spare(whole, demands=False, limit=limit)
         least = given.core(in_order(kept, number))
         if least is None:
             raise RuntimeError("the maps differ between two encodings")
-        needed = 0  # at least so many
-        # First many at a time. If those that are tried together cannot be spared, one is needed.
+        needed = 0  # a lower bound on the number of reasons
+        # Many are tried at a time at first. If they cannot all be removed, one of them is needed.
         for size in sorted({max(1, len(least) // (2 * most if most else 8)), 1}, reverse=True):
             tried = in_order(least, number)[::-1]
             needed = 0
@@ -238,7 +269,7 @@ def reduced(
 
 
 def _burden(names: Sequence[str]) -> tuple[int, int]:
-    """How many reasons there are to read; and how many of them are gathered ones of one step."""
+    """How many reasons there are to read, and how many of these are gathered ones of one step."""
     return len(names), sum(of_one_step(name) for name in names)
 
 
@@ -249,9 +280,12 @@ def verify(
     program: Program,
     put: Put,
 ) -> None:
-    """Puts, reason by reason, all that are left of them, and of one that cannot be spared a map
-    that breaks it, and no other one of them: its dstates, what else it breaks, the single reasons
-    that are broken of this one, and all that is so in the map. What can be spared is left out."""
+    """Verify reason by reason that each is needed, and put what is found.
+
+    For a reason that is needed, a map is put that breaks no other one of them: its dstates, what
+    else it breaks, the single reasons of this one that are broken, and all that holds in the map. A
+    reason that is not needed is removed.
+    """
     given = Given(program, assumed)
     given.name(gather=gather)
     if given.core(names) is None:
@@ -277,8 +311,8 @@ def verify(
 
 
 def rank(name: str) -> tuple[int, tuple[int, ...]]:
-    """Reasons by kind, and then by their steps."""
-    kind = kind_of(name)  # or the words of a whole rule
+    """The sort key of a reason: its kind, then its steps."""
+    kind = kind_of(name)  # or it is the text of a whole rule
     first = RULE_NAMES.index(kind) if kind in RULES else [*RULES.values()].index(kind)
     return first, numbers_of(name)
 
@@ -290,7 +324,7 @@ def _span(name: str) -> int:
 
 
 def in_order(names: Sequence[str], number: int) -> list[str]:
-    """The reasons in one of several orders: those that come last are spared first."""
+    """The reasons in one of several orders; the last ones are removed first."""
     if number == NEAR:
         return sorted(names, key=lambda name: (_span(name), rank(name)))
     if number <= 1:

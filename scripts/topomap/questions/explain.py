@@ -1,12 +1,12 @@
 """Why a statement is impossible or certain, or why there is no map.
 
-``encodings/explain.lp`` makes each thing that a rule forbids a reason that may be given up. Of
-the shortest beginning of the experience in which it is so already, those reasons are sought
-without any one of which it would not be so: whole kinds of rules are spared first, then one
-reason after the other, in several orders, of which the smallest answer is kept. Where there is no
-map at all, and more than a few of them would be needed, they are gathered (``cores``): each is a
-whole rule, or all that was seen after one step. Where no map is
-closed, and a default stands in the way (``defaults.in_the_way``), that is said, and no reasons.
+``encodings/explain.lp`` makes a reason, which may be given up, of each thing that a rule forbids.
+First the shortest beginning of the experience is found of which the verdict is already true. Then a
+minimal unsatisfiable core of reasons is sought for it: whole kinds of rules are removed first, then
+one reason after the other, in several orders, and the smallest core is kept. If there is no map at
+all, and more than a few reasons would be needed, they are gathered (``cores``): each is a whole
+rule, or all that was seen after one step. If no map is closed and a default stands in the way
+(``defaults.in_the_way``), that is said instead of reasons.
 """
 
 from collections import Counter
@@ -48,23 +48,27 @@ from topomap.solver import defaults
 from topomap.solver.programs import Program, calls, forget
 from topomap.solver.threads import Put
 
-MOST_OTHERS, MANY = 4, 8  # that a map breaks besides, as told; reasons, of which a sum is told
+# So many other reasons that a map breaks are listed; more reasons than MANY are summed up.
+MOST_OTHERS, MANY = 4, 8
 VERDICTS = {
     "impossible": "impossible",
     "certain": "certain",
     "open": "so in some maps, and not in others",
     "no map": "no map is consistent with the experience",
 }
-LATE = {"closed", "travelled"}  # what a map may lack after a step and have after a later one
-LASTING = ("same", "at")  # relations of which later steps tell nothing new
+LATE = {"closed", "travelled"}  # demands that a map may meet only after a later step
+LASTING = ("same", "at")  # relations about which later steps tell nothing new
 Goal = bool | None  # whether the statement is to hold; None if there is none
 
 
 @dataclass(frozen=True)
 class Reason:
-    """A reason, in words; ``at`` is a map that breaks it, and no other one of the answer, and
-    ``also`` what that map breaks besides. If it is gathered of single ones, ``breaks`` are those
-    that are broken in that map, and ``then`` the first of them in words."""
+    """A reason, in words.
+
+    ``at`` is a map that breaks this reason and no other one of the answer, and ``also`` says what
+    else that map breaks. If the reason is gathered from single ones, ``breaks`` has those that the
+    map breaks, and ``then`` the first of them in words.
+    """
 
     name: str
     told: Told
@@ -75,16 +79,16 @@ class Reason:
 
     @property
     def kind(self) -> str:
-        """Its name, without the steps."""
+        """The name of the reason without its steps."""
         return kind_of(self.name)
 
     @property
     def rule(self) -> str:
-        """The rule that it is of, in words."""
+        """The rule behind the reason, in words."""
         return RULES.get(self.kind, self.kind)
 
     def lines(self) -> Iterator[str]:
-        """The reason to read, and a map without it."""
+        """The reason as lines to read, and a map without it."""
         name = "" if self.name == self.rule else f"{self.name}: "
         yield f"  {name}{self.rule}: {self.told.words}"
         if self.at:
@@ -116,10 +120,13 @@ class Reason:
 
 @dataclass
 class Explanation:
-    """What is found: the verdict, and the reasons for it in the first ``horizon`` steps, or what is
-    ``in_the_way`` of a closed map; or maps in which the statement holds and does not.
-    ``gathered``: whether reasons are whole rules, or what is told of one step; ``fewest``: whether
-    it is proved that no fewer of these suffice."""
+    """What was found.
+
+    It has the verdict; the reasons for it in the first ``horizon`` steps, or what is ``in_the_way``
+    of a closed map; or maps in which the statement holds and does not hold. ``gathered`` tells
+    whether reasons are whole rules, or all that is told of one step; ``fewest`` tells whether it is
+    proved that no fewer of these suffice.
+    """
 
     verdict: str | None = None
     horizon: int | None = None
@@ -133,8 +140,7 @@ class Explanation:
     def lines(
         self, experience: Experience, statement: Statement | None, fault: str | None
     ) -> Iterator[str]:
-        """What was found of a statement about an experience, to read; ``fault`` says why not all
-        was."""
+        """What was found about a statement, as lines; ``fault`` says why not everything was."""
         head = f"{statement.text}: " if statement else ""
         if self.verdict is None:
             yield f"{head}not settled"
@@ -201,7 +207,7 @@ class Explanation:
 
 
 class Explainer:
-    """The way to an answer."""
+    """The search for an explanation."""
 
     def __init__(
         self,
@@ -222,11 +228,14 @@ class Explainer:
             self.first = max(a.number for a in self.term.arguments[:2]) if self.lasting else 0
 
     def settle(self) -> None:
-        """Find the verdict, then the reasons. Raises Stopped at the time limit, or out of
-        memory."""
+        """Find the verdict, then the reasons.
+
+        Raises:
+            Stopped: The time limit has passed, or memory ran out.
+        """
         answer = self.found
         self.watch.title("is there a map")
-        if self.term is None or self.seen:  # what was seen is no rule that can be spared
+        if self.term is None or self.seen:  # what was seen is not a rule that can be removed
             cut = self._beginning(None)
             if cut and "closed" in cut[1].parts:
                 answer.verdict, answer.horizon = "no map", cut[0]
@@ -251,11 +260,15 @@ class Explainer:
             answer.verdict = "open"
 
     def _beginning(self, goal: Goal) -> tuple[int, Query] | None:
-        """The shortest beginning that has no map of the kind, and what it is to demand; None if
-        even the whole has one, which is then kept. What a beginning cannot have, no longer one
-        has, if it is of the lasting kind (a map of the longer one holds a map of the shorter)."""
+        """Find the shortest beginning that has no map of the kind, and what it must demand.
+
+        It is None if even the whole has such a map, which is then kept. If a beginning has no map
+        of a lasting kind, then no longer beginning has one, because the map of the longer one
+        contains a map of the shorter one.
+        """
         last = self.experience.steps
-        if self.experience.assumed:  # of the whole: it says nothing of a beginning
+        # Assumptions are about the whole, and say nothing about a beginning.
+        if self.experience.assumed:
             return None if self._has_map(last, self.query, goal) else (last, self.query)
         lasting = replace(self.query, parts=self.query.parts - LATE)
         if goal is None or self.lasting:
@@ -278,7 +291,7 @@ class Explainer:
         return None if self._has_map(last, self.query, goal) else (last, self.query)
 
     def _has_map(self, steps: int, query: Query, goal: Goal) -> bool:
-        """Whether there is a map of so many steps, which is kept if it is of all."""
+        """Tell whether there is a map of so many steps; if they are all, it is kept."""
         if goal is not None:
             query = query.having("query")
         experience, facts = self.experience.cut(steps), self.fact * (goal is not None)
@@ -316,7 +329,7 @@ class Explainer:
             if told:
                 self.found.gathered, names, self.found.fewest = told
                 self.found.reasons = [self._reason(experience, name) for name in names]
-        forget()  # what the solver has learnt: the answer is verified anew
+        forget()  # the answer is verified without what the solver has learnt
         self.watch.phase("verified")
         reasons = {reason.name: reason for reason in self.found.reasons}
         work = partial(verify, assumed, self.found.gathered, names)
@@ -338,7 +351,7 @@ class Explainer:
         breaks: tuple[str, ...] = (),
         symbols: Sequence[clingo.Symbol] = (),
     ) -> Reason:
-        """A reason in words; and if a map that breaks it is given, what it is like there."""
+        """Put a reason into words, with what a map is like that breaks it, if that is given."""
         if not self.found.gathered or not is_gathered(name):
             told = _told(experience, name, at, symbols) if at else _plainly(experience, name)
             return Reason(name, told, at, also)
@@ -356,6 +369,7 @@ def _one(
     """Find a map."""
 
     def take(model: clingo.Model) -> bool:
+        """Put the map."""
         found.append(dstates(model.symbols(shown=True)))
         return False
 
@@ -367,7 +381,7 @@ def _one(
 def _told(
     experience: Experience, name: str, at: tuple[DState, ...], symbols: Sequence[clingo.Symbol]
 ) -> Told:
-    """A reason in words, spelled out from a map that breaks it."""
+    """Put a reason into words, spelt out from a map that breaks it."""
     common = [
         [a.number for a in atom.arguments]
         for atom in symbols
@@ -383,7 +397,7 @@ def _told(
 
 
 def _plainly(experience: Experience, name: str) -> Told:
-    """A reason in words, without a map that breaks it."""
+    """Put a reason into words without a map that breaks it."""
     kind, numbers = kind_of(name), numbers_of(name)
     if kind == "view":
         return told_views(experience, numbers)

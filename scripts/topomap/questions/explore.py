@@ -1,8 +1,8 @@
-"""Where to go next: the further walk that tells maps apart, or sees what none predicts.
+"""Where to go next: the walk that tells maps apart, or that leads to what no map predicts.
 
-clingo chooses the walk, over all the maps at once (``encodings/explore.lp``, ``unseen.lp``),
-and finds the proofs that none can be chosen (``bisimilar.lp``). How long a walk is worth asking
-for is found before that by a search of what the maps can predict together.
+clingo chooses the walk, over all the maps at once (``encodings/explore.lp``, ``unseen.lp``), and
+finds the bisimulations that prove that there is none (``bisimilar.lp``). Which lengths of the walk
+are worth asking for is found before, by a search of what the maps can predict together.
 """
 
 import re
@@ -24,24 +24,25 @@ from topomap.runtime.watch import Attempt, Watch
 from topomap.solver.programs import Program
 from topomap.solver.threads import Put, in_thread
 
-LIMITS = ("steps", "effort", "maps")  # why a plan may not be the best one, but for lack of time
-MOST_CLASSES = 60  # that are told apart at once
-MOST_STATES = 150_000  # of all the maps together
-MOST_WORK = 400_000  # moves of the search for the length, and of that for pairs
-CONFLICTS = 3000  # after which clingo is asked no longer; a tenth, if the answer is known
-MORE = 4  # steps by which clingo is given more, where that search does not end
-TOGETHER = 100  # proofs found at once
+# Reasons, besides lack of time, why a plan may not be the best.
+LIMITS = ("steps", "effort", "maps")
+MOST_CLASSES = 60  # the largest number of classes to be told apart at once
+MOST_STATES = 150_000  # the largest number of states of all maps together
+MOST_WORK = 400_000  # the largest number of moves of each search, for the length and for pairs
+CONFLICTS = 3000  # the largest number for clingo; a tenth of it if the answer is known
+MORE = 4  # additional steps for clingo if that search does not end
+TOGETHER = 100  # the number of proofs that are found at once
 _NUMBER = re.compile(r"\d+|nowhere")
 
 
 @dataclass(frozen=True)
 class Untold:
-    """Two maps, by number, that the walk does not tell apart, each standing for its class; and
-    why.
+    """Two maps, by number, that the walk does not tell apart, and why.
 
-    ``why``: ``bisimilar``, no walk tells them, for ever; ``pending``, none does by what both
-    predict, but some come to the gateways ``open`` (of the one map, of the other); ``walk``,
-    another walk does. ``related`` is the relation that proves the first two.
+    Each map stands for its class. ``why`` is ``bisimilar`` if no walk can ever tell them apart;
+    ``pending`` if no walk tells them apart by what both predict, but some walks lead to the
+    gateways ``open`` (of the one map, of the other); ``walk`` if another walk tells them apart.
+    ``related`` is the bisimulation that proves the first two.
     """
 
     one: int
@@ -53,17 +54,19 @@ class Untold:
 
 @dataclass(frozen=True)
 class Plan:
-    """The next walk, and what comes of it.
+    """The next walk, and what it achieves.
 
-    ``kind``: ``apart``, the walk refutes maps whichever is the real one; ``pending``, it leads
-    to a pending gateway, as no walk does that; ``settled``, there is one map, and it is closed;
-    ``bisimilar``, there are several, which no walk tells apart, and no pending gateway.
+    ``kind`` is ``apart`` if the walk refutes maps, whichever is the real one; ``pending`` if no
+    walk does that, and this one leads to a pending gateway; ``settled`` if there is one map, and it
+    is closed; ``bisimilar`` if there are several maps that no walk tells apart, and no pending
+    gateway.
 
-    ``turns`` are those of the walk; after step ``drop`` of it (0: now) the marker is put down.
-    ``left`` maps are left in the worst case. ``proved``: no walk leaves fewer (``pending``: none
-    leads to one in more maps), and none that does as well is shorter; ``fault`` says why not.
-    ``predictions`` are, of each map, those of each step, None where it predicts nothing;
-    ``classes`` the maps, by number from 0, that predict the same of every walk.
+    ``turns`` are those of the walk; the marker is put down after its step ``drop`` (0: now).
+    ``left`` maps are left in the worst case. ``proved`` tells that no walk leaves fewer (for
+    ``pending``: none leads to one in more maps), and that none that does as well is shorter;
+    ``fault`` says why this is not proved. ``predictions`` has for each map what it predicts of each
+    step, or None from where it predicts nothing. ``classes`` has the maps, by number from 0, that
+    predict the same of every walk.
     """
 
     kind: str
@@ -78,7 +81,7 @@ class Plan:
 
 
 class _Call(Program):
-    """A program on facts about maps, to be solved in a thread of its own."""
+    """A program with facts about maps, which is solved in a thread of its own."""
 
     def __init__(self, file: str, facts: str, options: Sequence[str]):
         path = ENCODINGS / f"{file}.lp"
@@ -89,14 +92,19 @@ class _Call(Program):
         self.whole = False
 
     def keep(self) -> None:
-        """There is nothing to keep."""
+        """Keep nothing."""
 
     def answers(self, watch: Watch) -> Iterator[tuple[list[int], list[str]]]:
-        """Better and better answers, each with what it costs; the last one is a best one, if
-        the search is ``whole`` and was not ended by the limit."""
+        """Give better and better answers, each with its cost.
+
+        The last one is a best one, if the search is ``whole`` and was not ended by the limit.
+        """
 
         def work(put: Put) -> None:
+            """Solve the program, and put the answers."""
+
             def take(model: clingo.Model) -> bool:
+                """Put an answer."""
                 return put((list(model.cost), list(map(str, model.symbols(shown=True)))))
 
             self.control.ground()
@@ -115,11 +123,12 @@ def plan(
     steps: int = LONGEST_WALK,
     proofs: bool = True,
 ) -> Plan:
-    """The next walk, of ``steps`` steps at most, for an agent to whom each of these maps is
-    possible. With ``marker`` it carries one, which it may drop once. Without ``proofs`` the plan
-    does not say why maps are not told apart.
+    """Plan the next walk, of at most ``steps`` steps, among maps that are all possible.
 
-    What was found is kept when the time is over; ``fault`` says so."""
+    With ``marker`` the agent carries a marker, which it may put down once. Without ``proofs`` the
+    plan does not say why maps are not told apart. What was found is kept when the time is over;
+    ``fault`` says so.
+    """
     if any(standing.world.slots != slots for standing in among):
         raise ValueError("maps of other slots")
     if len({sight(one, one.dstate, one.marker) for one in among}) != 1:
@@ -135,7 +144,7 @@ def plan(
 
 
 class _Planner:
-    """What is known of a plan, as it is made."""
+    """What is known of a plan while it is made."""
 
     def __init__(
         self, slots: int, among: Sequence[Standing], watch: Watch, marker: bool, steps: int
@@ -153,7 +162,7 @@ class _Planner:
         self.apart: set[tuple[int, int]] | None = None
 
     def part(self) -> None:
-        """Part the maps into classes that predict the same of every walk, the largest first."""
+        """Divide the maps into classes that predict the same of every walk, the largest first."""
         for number, standing in enumerate(self.among):
             self.watch.tick()
             self.names.setdefault(shape(standing), []).append(number)
@@ -198,7 +207,7 @@ class _Planner:
             self.kind = "bisimilar"
 
     def _best(self, file: str, game: Game, total: int) -> int:
-        """What the best walk of a game comes to; an encoding chooses it."""
+        """Find how good the best walk of a game is; an encoding chooses the walk."""
         best = Best(total, (), game.bound(*game.root))
         try:
             breadth_first(game, self.steps, Work(self.watch, MOST_WORK), best)
@@ -220,8 +229,10 @@ class _Planner:
         return best.value
 
     def _ask(self, file: str, length: int, best: Best, known: tuple[int, int] | None) -> bool:
-        """Ask an encoding for the best walk of some length; whether it has found it. What that
-        comes to, and how many steps it has, may be known."""
+        """Ask an encoding for the best walk of a length, and tell whether it was found.
+
+        How good it is, and how many steps it has, may be known.
+        """
         limit = CONFLICTS // 10 if known else CONFLICTS
         carried = "carried." if self.marker and file == "explore" else ""
         call = _Call(file, self.facts + carried, [f"--const=n={length}", f"--solve-limit={limit}"])
@@ -233,7 +244,7 @@ class _Planner:
                 self.walk = best.walk
         if known and call.whole and cost != known:
             raise RuntimeError(f"{file}.lp and the search for the length differ: {cost}, {known}")
-        if known and not call.whole:  # the search's walk is of the least turns, this may not be
+        if known and not call.whole:  # the walk of the search has the least turns; this one may not
             best.walk = self.walk = before
         return call.whole
 
@@ -260,7 +271,7 @@ class _Planner:
         self.untold.sort(key=lambda pair: (pair.one, pair.other))
 
     def _proved(self, pairs: Sequence[tuple[int, int]]) -> Iterator[Untold]:
-        """Why no walk tells these pairs apart, by ``bisimilar.lp``; each proof is checked."""
+        """Find why no walk tells these pairs apart, by ``bisimilar.lp``; each proof is checked."""
         numbers = sorted({number for pair in pairs for number in pair})
         text = facts((number, self.among[number]) for number in numbers)
         text += "".join(f"compare({one},{other}). " for one, other in pairs)
@@ -322,7 +333,7 @@ class _Planner:
 
 
 def _numbers(atom: str) -> list[Any]:
-    """The numbers in an atom, in their order; None for nowhere."""
+    """The numbers in an atom in order; None stands for nowhere."""
     return [None if n == "nowhere" else int(n) for n in _NUMBER.findall(atom)]
 
 
@@ -334,6 +345,6 @@ def _walk(atoms: Iterable[str]) -> Walk:
 
 
 def _told(walk: Walk) -> tuple[tuple[int, ...], int | None]:
-    """The turns of a walk, and the step after which it drops the marker."""
+    """The turns of a walk, and the step after which it puts the marker down."""
     drops = [step for step, (drop, _) in enumerate(walk) if drop]
     return tuple(turn for _, turn in walk), drops[0] if drops else None

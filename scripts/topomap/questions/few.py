@@ -1,9 +1,10 @@
-"""Few reasons why there is no map, to be read.
+"""Few reasons why there is no map, so that they can be read.
 
-A few single reasons tell most. If more are needed, they are gathered (``cores``), and the fewest
-are sought: each set of gathered reasons without which there is a map must be met by those that
-suffice. So the fewest that meet all sets found so far are tried: they suffice, or lead to one more
-such set. Where this takes too long, reasons are spared one after the other instead.
+A few single reasons say most. If more are needed, they are gathered (``cores``), and the fewest are
+sought as a minimum hitting set: each set of gathered reasons without which there is a map must
+contain one of the reasons that suffice. So the fewest reasons that hit all sets found so far are
+tried. Either they suffice, or they lead to one more such set. If this takes too long, reasons are
+removed one after the other instead.
 """
 
 from collections.abc import Sequence
@@ -15,19 +16,21 @@ from topomap.questions.reasons import of_one_step
 from topomap.solver.programs import Program
 from topomap.solver.threads import Put
 
-MOST = 5  # single reasons; if more are needed, and fewer gathered ones, these are told
-# Orders in which single reasons are tried, those that are parts of gathered ones, and gathered
-# ones; and conflicts of the solver to try one.
+MOST = 5  # if more single reasons are needed than gathered ones, the gathered ones are told
+# Orders in which single reasons, parts of gathered reasons, and gathered reasons are tried; and
+# the solver's conflicts to try one reason.
 ORDERS, PARTS, GATHERED = (NEAR, 0, 2), (NEAR, 0, 2, 3, 4, 5), (0, 1)
 TRYING = 100
-# Of the solver, until the fewest reasons are no longer sought: conflicts times rules, as they take
-# the longer the more rules there are; and calls.
+# The solver's work after which the fewest reasons are no longer sought: conflicts times rules,
+# because a conflict takes longer if there are more rules; and calls.
 WORK, CALLS = 4_000_000, 400
 
 
 def find_few(program: Program, put: Put) -> None:
-    """Puts reasons that suffice, each time with whether they are gathered, and whether it is proved
-    that no fewer suffice. Whether some of the last ones can be spared is left to ``verify``."""
+    """Put reasons that suffice, and whether they are gathered and proved to be the fewest.
+
+    Whether some of the last ones are not needed is left to ``verify``.
+    """
     given = Given(program, ())
     given.name(gather=True)
     enough = given.core(given.names)
@@ -45,6 +48,7 @@ def find_few(program: Program, put: Put) -> None:
         given.name(gather=True)
 
         def tell(names: Sequence[str]) -> bool:
+            """Put gathered reasons, and say whether to go on."""
             return put((True, tuple(names), False))
 
         reasons = reduced(given, tell, orders=GATHERED, limit=TRYING) or []
@@ -60,7 +64,7 @@ def find_few(program: Program, put: Put) -> None:
 
 
 class _Meeting:
-    """The fewest names that meet each of some sets; of as many, those of the fewest steps."""
+    """The fewest names that hit each of some sets; of equally many, those with the fewest steps."""
 
     def __init__(self, names: Sequence[str]):
         self.names = names
@@ -74,15 +78,16 @@ class _Meeting:
             backend.add_minimize(1, [(atom, 1) for atom in steps])
 
     def add(self, names: Sequence[str]) -> None:
-        """One more set."""
+        """Add one more set."""
         with self._control.backend() as backend:
             backend.add_rule([], [-self._atoms[self.names.index(name)] for name in names])
 
     def least(self) -> list[str]:
-        """The names that meet all sets."""
+        """Find the names that hit all sets."""
         found: list[list[str]] = []
 
         def take(model: clingo.Model) -> None:
+            """Note the names of an answer."""
             taken = sorted(one.arguments[0].number for one in model.symbols(atoms=True))
             found.append([self.names[number] for number in taken])
 
@@ -91,7 +96,7 @@ class _Meeting:
 
 
 def _fewest(given: Given) -> list[str] | None:
-    """The fewest gathered reasons that suffice; None if they are not found within the budget."""
+    """Find the fewest gathered reasons that suffice; None if the budget is not enough."""
     meeting = _Meeting(given.names)
     conflicts = WORK // len(given.literals)
     while given.conflicts < conflicts and given.calls < CALLS:

@@ -1,4 +1,4 @@
-"""An experience that is followed: what is told after each step."""
+"""An experience that is followed, and what is told after each step."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -20,15 +20,17 @@ from topomap.search.living import Living, Told, experience_of
 from topomap.solver.online import LivingMap, OnlineSolver, ReadMap, Status
 from topomap.solver.stepwise import Asked
 
-SHOWN = 3  # best maps that are told in text
-WAY = 201  # dstates of the way in a map that are told, the last ones: of a log of 200 steps all
+SHOWN = 3  # the largest number of best maps in the text
+WAY = 201  # so many of the last dstates of a map are told: all those of 200 steps
 
 
 @dataclass(frozen=True)
 class StepAnswer:
-    """What is told after a step of an experience: its status; what is ``certain`` by now, and
-    since the step before, ``new``; the ``plan`` of what to do next, if one was found; and why
-    something is missing."""
+    """What is told after a step of an experience.
+
+    It has the status; what is ``certain`` by now, and what is ``new`` since the step before; the
+    ``plan`` of what to do next, if one was found; and why something is missing.
+    """
 
     record: Record
     done: Growing[Step]
@@ -40,7 +42,7 @@ class StepAnswer:
 
     @cached_property
     def experience(self) -> Experience:
-        """The experience up to this step; it takes as long as the log is."""
+        """The experience up to this step; making it takes time in proportion to its length."""
         record = self.record
         assert record.slots is not None
         return experience_of(
@@ -48,7 +50,7 @@ class StepAnswer:
         )
 
     def lines(self, seconds: float) -> Iterator[str]:
-        """The same to read; it took so many seconds."""
+        """What is told, as lines to read; it took so many seconds."""
         status = self.status
         if status.none_since is not None:
             since = f" since step {status.none_since}" if status.none_since < status.step else ""
@@ -89,7 +91,7 @@ class StepAnswer:
             yield f"  partial: {self.fault}"
 
     def document(self) -> dict[str, Any]:
-        """The same as JSON; None where it is open."""
+        """What is told, as JSON; None stands for what is open."""
         status, made, new = self.status, self.plan, self.new
         settled = status.all_best or bool(status.maps)
         first = max(0, status.step + 1 - WAY)
@@ -128,9 +130,11 @@ class StepAnswer:
 
 
 class Following:
-    """An experience that goes on, or is taken back, as its record says; and what is certain
-    after each step, with or without the ``path_axiom``. ``marker``: the agent carries one; of
-    more than ``most`` hypotheses it is only told that they are more."""
+    """An experience that goes on, or is taken back, as its record says.
+
+    It tells what is certain after each step, with or without the ``path_axiom``. With ``marker``
+    the agent carries a marker. If there are more than ``most`` hypotheses, only that is told.
+    """
 
     def __init__(
         self,
@@ -146,10 +150,10 @@ class Following:
         self.record = Record(one_log=planar)
         self._living = () if living is None else (living,)
         self.solver: OnlineSolver | None = None
-        self._certain: list[Certain] = []  # by steps
+        self._certain: list[Certain] = []  # one entry for each step
 
     def take(self, record: Record) -> Iterator[int]:
-        """Go to what a record says; the steps at which it stands on the way."""
+        """Go to what a record says, and give the number of each step at which it stops."""
         old, new = self.record.whole(), record.whole()
         self.record = record
         common = old.common(new)
@@ -177,15 +181,17 @@ class Following:
             self.solver.step(step)
 
     def answer(self, watch: Watch) -> StepAnswer:
-        """What is known where it stands, after one step at least; at the time limit, what is known
-        until then."""
+        """Tell what is known at this step, which must exist.
+
+        At the time limit it is what is known so far.
+        """
         assert self.solver is not None
         step, record = self.solver.told.last, self.record
         del self._certain[step:]
         status = self.solver.status(watch)
         before = self._certain[-1] if self._certain else Certain()
         following, fault = None, status.fault
-        # What maps predict is exact, and so tells nothing where bearings are not.
+        # The predictions of maps are exact, so they are of no use if bearings are not exact.
         if status.maps and not fault and not record.tolerance:
             following, fault = self._plan(self.solver, status, watch)
         certain = before if status.certain is None else status.certain
@@ -197,8 +203,12 @@ class Following:
     def _plan(
         self, solver: OnlineSolver, status: Status, watch: Watch
     ) -> tuple[Plan | None, str | None]:
-        """The next best action: what explore says of the best maps; and why the planning was cut,
-        if it was. None if no walk was found, and it is open whether there is one."""
+        """Plan what to do next: what explore says of the best maps.
+
+        Returns:
+            The plan, which is None if no walk was found and it is open whether there is one; and
+            why the planning was cut short, or None.
+        """
         told, one = solver.told, status.maps[0]
         if len(status.maps) == 1 and isinstance(one, LivingMap):
             return _plan_for(told, one.living), None
@@ -217,10 +227,13 @@ def _standing(solver: OnlineSolver, one: ReadMap | LivingMap) -> Standing:
 
 
 def _plan_for(told: Told, living: Living) -> Plan | None:
-    """What explore says of one map: the shortest walk to a pending gateway, and of such walks the
-    one of the least turns. None if it is too long."""
+    """Plan for one map: the shortest walk to a pending gateway, with the fewest turns.
+
+    It is None if the walk is too long.
+    """
     links, slots = living.form.links, told.slots
-    reached: dict[int, tuple[int, int]] = {}  # from which gateway each was, by which turn
+    # For each gateway, the one before it, and the turn there.
+    reached: dict[int, tuple[int, int]] = {}
     start = living.visit.gateway
     level, seen, out = [start], {start}, None
     for _ in range(LONGEST_WALK):
@@ -259,7 +272,7 @@ def _plan_for(told: Told, living: Living) -> Plan | None:
 def _next(made: Plan, record: Record, status: Status) -> str:
     assert record.slots is not None
     told, every = [words.direction(turn, record.slots) for turn in made.turns], status.all_best
-    if status.step == 0 and told:  # it arrived by no gateway, so there is no way back
+    if status.step == 0 and told:  # the agent arrived by no gateway, so there is no way back
         told[0] = "by the gateway stood at" if made.turns[0] == 0 else ""
     walk = ", ".join(
         " ".join(filter(None, [str(turn), f"({'; '.join(how)})" * bool(how)]))

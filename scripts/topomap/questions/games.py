@@ -1,5 +1,7 @@
-"""How long a walk is worth asking clingo for: a search, breadth first, of what maps can predict
-together."""
+"""How long a walk is worth asking clingo for.
+
+This is found by a breadth-first search of what the maps can predict together.
+"""
 
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
@@ -8,32 +10,36 @@ from typing import Any
 from topomap.questions.machine import Action, Machine, Spent, Work
 
 Walk = tuple[Action, ...]
-Key = Any  # hashable: what of a state of a search decides how it goes on
-Weighed = tuple[tuple[int, int], ...]  # states, each with how many maps it stands for
-Group = tuple[int, Weighed]  # maps seen alike so far, and how many more are not told from them
+Key = Any  # it can be hashed; it determines how the search goes on
+Weighed = tuple[tuple[int, int], ...]  # states, each with the number of its maps
+# Maps with the same views so far, and how many others cannot be told from them.
+Group = tuple[int, Weighed]
 
 
 class Game:
-    """What a search goes by: a state is a key and a score, and the less the score the better."""
+    """What a search goes by: a state is a key and a score, and a lower score is better."""
 
     root: tuple[Key, int]
 
     def after(self, key: Key, score: int) -> Iterator[tuple[Action, Key, int]]:
-        """Where each action leads."""
+        """The states to which the actions lead."""
         raise NotImplementedError
 
     def value(self, key: Key, score: int) -> int:
-        """What the walk so far comes to."""
+        """The value of the walk so far."""
         raise NotImplementedError
 
     def bound(self, key: Key, score: int) -> int:
-        """No walk that goes on from here comes to less."""
+        """A lower bound on the value of each walk that goes on from here."""
         raise NotImplementedError
 
 
 class Telling(Game):
-    """How many maps are left in the worst case. A key is the groups of maps that what is seen
-    may still part; the score is how many are left of a map whose part is settled."""
+    """The game of telling maps apart; its value is how many maps are left in the worst case.
+
+    A key has the groups of maps that views may still tell apart. The score is how many maps are
+    left in a group that is already settled.
+    """
 
     def __init__(
         self,
@@ -62,6 +68,7 @@ class Telling(Game):
         return frozenset(kept), score
 
     def after(self, key: frozenset[Group], score: int) -> Iterator[tuple[Action, Key, int]]:
+        """The states to which the actions lead."""
         actions = {a for _, weighed in key for a in self.machine.moves[weighed[0][0]]}
         for action in sorted(actions):
             groups: list[Group] = []
@@ -75,18 +82,20 @@ class Telling(Game):
                 known = [(end, weight) for end, weight in ends if end is not None]
                 lost = every - more - sum(weight for _, weight in known)
                 if lost:
-                    least = max(least, every)  # they predict nothing from here on
+                    least = max(least, every)  # they predict nothing any more
                 groups += self._parts(more + lost, known)
             yield action, *self._state(groups, least)
 
     def value(self, key: frozenset[Group], score: int) -> int:
+        """How many maps are left in the worst case."""
         return max([score, *(more + sum(w for _, w in weighed) for more, weighed in key)])
 
     def bound(self, key: frozenset[Group], score: int) -> int:
+        """A lower bound on how many maps any walk from here leaves."""
         return max([score, *(more + self._alike(weighed) for more, weighed in key)])
 
     def _alike(self, weighed: Weighed) -> int:
-        """How many of the group no walk tells from one of them, at the most."""
+        """An upper bound on how many maps of the group no walk tells from one of them."""
         if self.apart is None:
             return max(weight for _, weight in weighed)
         return max(
@@ -96,8 +105,11 @@ class Telling(Game):
 
 
 class Seeking(Game):
-    """How many maps predict all of the walk. A key is where the agent may be in those of which
-    the walk goes on; the score is how many have not come to a pending gateway."""
+    """The game of finding a pending gateway; its value is how many maps predict all of the walk.
+
+    A key has the dstates of the agent in the maps in which the walk goes on. The score is how many
+    maps have not come to a pending gateway.
+    """
 
     def __init__(self, machine: Machine, starts: Sequence[tuple[int, int]]):
         self.machine = machine
@@ -123,6 +135,7 @@ class Seeking(Game):
         return tuple(sorted(merged.items()))
 
     def after(self, key: Weighed, score: int) -> Iterator[tuple[Action, Key, int]]:
+        """The states to which the actions lead."""
         for action in sorted({a for state, _ in key for a in self.machine.moves[state]}):
             ends = [
                 (self.machine.moves[state][action], weight)
@@ -134,16 +147,21 @@ class Seeking(Game):
             yield action, self._state(on), score - lost
 
     def value(self, key: Weighed, score: int) -> int:
+        """How many maps predict all of the walk."""
         return score
 
     def bound(self, key: Weighed, score: int) -> int:
+        """A lower bound on how many maps predict all of any walk from here."""
         return score - sum(weight for _, weight in key)
 
 
 @dataclass
 class Best:
-    """The best walk known, what it comes to, and that no walk of up to ``length`` steps (any, if
-    None) does better or does it sooner; ``least`` bounds what any comes to."""
+    """The best walk that is known, and its value.
+
+    No walk of up to ``length`` steps (of any length, if it is None) has a better value, or the same
+    one after fewer steps. ``least`` is a lower bound on the value of any walk.
+    """
 
     value: int
     walk: Walk
@@ -152,7 +170,7 @@ class Best:
 
 
 def breadth_first(game: Game, steps: int, work: Work, best: Best) -> None:
-    """Search breadth-first; what is known is kept in ``best`` also if it is stopped."""
+    """Search breadth-first; what is known is kept in ``best``, even if the search is stopped."""
     level: list[tuple[Key, int, Walk]] = [(*game.root, ())]
     known = {game.root[0]: game.root[1]}
     try:
@@ -178,5 +196,5 @@ def breadth_first(game: Game, steps: int, work: Work, best: Best) -> None:
                         following.append((there, less, (*walk, action)))
             level = following
     except Spent:
-        if best.value <= best.least:  # it is one step longer than those of which all are known
+        if best.value <= best.least:  # all shorter walks are known
             best.length = None

@@ -1,4 +1,4 @@
-"""Lines as they come: of standard input, of a file that grows, and of a log."""
+"""Lines as they arrive: from standard input, from a file that grows, and from a log."""
 
 import contextlib
 import fcntl
@@ -10,19 +10,23 @@ from pathlib import Path
 
 from topomap.runtime.errors import InputError, of_file, say
 
-LONGEST = 2**20  # bytes of a line
+LONGEST = 2**20  # the largest number of bytes of a line
 PAUSE = 0.1  # seconds between two looks at a file
 
 
 class Log:
-    """The lines that were accepted, in a file. Raises InputError where it cannot be had."""
+    """A file with the lines that were accepted.
+
+    Raises:
+        InputError: The file cannot be opened.
+    """
 
     def __init__(self, path: str):
         self.path = path
         self._file: int | None = None
 
     def open(self, make: bool) -> None:
-        """Have the file, and nobody else; made only when there is something to write."""
+        """Open the file for this process alone; it is made when there is something to write."""
         flags = os.O_RDWR | os.O_APPEND | (os.O_CREAT if make else 0)
         try:
             self._file = os.open(self.path, flags, 0o666)
@@ -40,7 +44,7 @@ class Log:
             raise InputError(f"{self.path}: not the name of a file") from None
 
     def lines(self) -> Iterator[tuple[int, bytes]]:
-        """The lines that it has. A last one that was torn is dropped."""
+        """The lines of the file; a last line that is incomplete is dropped."""
         self.open(make=False)
         if self._file is None:
             return
@@ -55,7 +59,7 @@ class Log:
                 yield number, line
 
     def add(self, line: str) -> None:
-        """Write a line, so that it is there whatever comes."""
+        """Write a line in such a way that it survives a crash."""
         if self._file is None:
             self.open(make=True)
         assert self._file is not None
@@ -69,8 +73,11 @@ class Log:
 
 
 def arriving(path: str, wait: bool, stopped: Callable[[], None]) -> Iterator[bytes]:
-    """The lines of standard input to its end, or of a file as it grows; the last one when it
-    is whole, or when no more is to come. ``stopped`` raises if it is to end."""
+    """Give the lines of standard input to its end, or of a file as it grows.
+
+    The last line is given when it is complete, or when no more is to come. ``stopped`` raises an
+    error if the work is to end.
+    """
     try:
         file = os.dup(0) if path == "-" else os.open(path, os.O_RDONLY | os.O_NONBLOCK)
     except OSError as error:
@@ -110,7 +117,11 @@ def arriving(path: str, wait: bool, stopped: Callable[[], None]) -> Iterator[byt
 
 
 def decoded(line: bytes, source: str, number: int) -> str:
-    """The text of a line. Raises InputError if it is none."""
+    """Decode a line.
+
+    Raises:
+        InputError: It is not text.
+    """
     if len(line) > LONGEST:
         raise InputError(f"{source}:{number}: longer than {LONGEST >> 20} MiB")
     try:

@@ -1,5 +1,7 @@
-"""What maps predict of every walk at once, as a machine of states; and which states some walk
-tells apart."""
+"""What maps predict of every walk at once, as an automaton.
+
+It also tells which states some walk tells apart, and which are bisimilar.
+"""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
@@ -9,20 +11,23 @@ from typing import Any
 from topomap.questions.standings import Prediction, Standing, sight
 from topomap.runtime.watch import Watch
 
-Action = tuple[bool, int]  # whether to drop the marker first, and the turn
+Action = tuple[bool, int]  # whether the marker is put down first, and the turn
 
 
 @dataclass
 class Machine:
-    """What maps predict: states, how each looks, and where each action leads (None: to what is
-    not predicted). An action that is not there cannot be taken."""
+    """An automaton of what maps predict.
+
+    It has states, how each looks, and where each action leads (None: to what is not predicted). An
+    action that is not there is impossible.
+    """
 
     looks: list[int] = field(default_factory=list)
     moves: list[dict[Action, int | None]] = field(default_factory=list)
     seen: dict[Prediction, int] = field(default_factory=dict)
 
     def add(self, standing: Standing, carried: bool) -> int:
-        """Have the states of a map, too; returns the one where the agent stands."""
+        """Add the states of a map, and return the state of the agent."""
         world, slots = standing.world, standing.world.slots
         start = standing.dstate, standing.marker, carried
         numbers = {start: len(self.looks)}
@@ -45,7 +50,11 @@ class Machine:
         return numbers[start]
 
     def merged(self, starts: Sequence[int], watch: Watch) -> tuple["Machine", list[int]]:
-        """The same with states as one that predict the same of every walk, and the starts."""
+        """Merge states that predict the same of every walk.
+
+        Returns:
+            The smaller automaton, and the starts in it.
+        """
         block, number = self.looks, len(set(self.looks))
         while True:
             watch.tick()
@@ -71,17 +80,17 @@ def _ends(block: Sequence[int], moves: dict[Action, int | None]) -> Iterator[int
 
 
 class Spent(Exception):
-    """A search has taken more work than it may."""
+    """A search has used up its work."""
 
 
 class Work:
-    """What a search may still do."""
+    """How much work a search may still do."""
 
     def __init__(self, watch: Watch, left: int):
         self.watch, self.left = watch, left
 
     def take(self, much: int = 1) -> None:
-        """Note that something was done."""
+        """Count work that is done."""
         if self.left // 4096 != (self.left - much) // 4096:
             self.watch.tick()
         self.left -= much
@@ -90,8 +99,10 @@ class Work:
 
 
 def pairs_apart(machine: Machine, starts: Sequence[int], work: Work) -> set[tuple[int, int]] | None:
-    """The pairs of states, of those that walks lead to at once, that some walk tells apart; None
-    if it takes too much work."""
+    """Find the pairs of states, to which walks lead at once, that some walk tells apart.
+
+    It is None if that takes too much work.
+    """
     pairs = list(combinations(sorted(set(starts)), 2))
     before: dict[tuple[int, int], list[tuple[int, int]]] = {pair: [] for pair in pairs}
     apart = []

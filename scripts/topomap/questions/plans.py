@@ -1,4 +1,4 @@
-"""What is told of a further walk, to read and as JSON."""
+"""What is told of a further walk, as lines to read and as JSON."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -12,7 +12,7 @@ from topomap.questions.candidates import Candidates
 from topomap.questions.explore import Plan, Untold
 from topomap.questions.standings import Prediction
 
-MOST_GROUPS, MOST_PAIRS, LONGEST = 6, 12, 24  # that are told in words
+MOST_GROUPS, MOST_PAIRS, LONGEST = 6, 12, 24  # the largest numbers that are told in words
 FAULTS = {
     "steps": "no walk of at most {steps} steps does better, a longer one may",
     "effort": "longer walks may do better",
@@ -22,8 +22,10 @@ FAULTS = {
 
 @dataclass(frozen=True)
 class Planned:
-    """A plan for the maps in question, for an agent that carries a ``marker`` or not, and walks
-    ``steps`` steps at most."""
+    """A plan for the maps in question.
+
+    The agent may carry a ``marker``, and walks at most ``steps`` steps.
+    """
 
     among: Candidates
     plan: Plan
@@ -32,18 +34,18 @@ class Planned:
 
     @property
     def fault(self) -> str | None:
-        """Why the maps may not be all, or the walk not the best, if so."""
+        """Why the maps may not be all, or the walk may not be the best; or None."""
         return self.among.fault or self.plan.fault
 
     @property
     def kind(self) -> str | None:
-        """What the walk is for, or why there is none; None where that is open."""
+        """What the walk is for, or why there is none; None if that is open."""
         if self.plan.kind == "settled":
             return self.plan.kind if self.among.every else None
         return self.plan.kind if self.plan.turns or self.plan.kind == "bisimilar" else None
 
     def lines(self) -> Iterator[str]:
-        """The answer to read."""
+        """The answer as lines to read."""
         made = self.plan
         yield self.among.words()
         if made.turns:
@@ -97,12 +99,12 @@ def _seen(one: Prediction | None) -> dict[str, Any] | None:
 
 
 def _pairs(one: Prediction) -> list[tuple[int, int]]:
-    """Which gateways are on one path, the lower slot first."""
+    """The pairs of gateways on one path, each with the lower slot first."""
     return sorted(pair for pair in one.straight or () if pair[0] < pair[1])
 
 
 def _walk(experience: Experience, made: Plan) -> Iterator[str]:
-    """The walk, and what the maps predict of it."""
+    """Describe the walk, and what the maps predict of it."""
     groups: dict[tuple[Prediction | None, ...], list[int]] = {}
     for number, row in enumerate(made.predictions, 1):
         groups.setdefault(row, []).append(number)
@@ -125,7 +127,7 @@ def _walk(experience: Experience, made: Plan) -> Iterator[str]:
 
 
 def _turn(experience: Experience, step: int, turn: int) -> str:
-    """A turn, by its number and in words."""
+    """Describe a turn, by its number and in words."""
     slots = experience.slots
     if step == 0 and experience.steps == 0:
         return f"{turn} leave{' by the gateway stood at' * (turn == 0)}"
@@ -133,8 +135,11 @@ def _turn(experience: Experience, step: int, turn: int) -> str:
 
 
 def _cell(one: Prediction | None) -> str:
-    """What is seen: gateways clockwise of the one arrived at, landmarks, the marker, where that
-    gateway points by the compass, and which gateways are on one path."""
+    """Describe what is seen.
+
+    It has the gateways clockwise from the one of the arrival, the landmarks, the marker, where that
+    gateway points by the compass, and which gateways are on one path.
+    """
     if one is None:
         return "-"
     seen = " ".join(map(str, sorted(one.view)))
@@ -146,7 +151,7 @@ def _cell(one: Prediction | None) -> str:
 
 
 def _verdict(kind: str, many: int, made: Plan, every: bool) -> str:
-    """What the walk is good for; ``kind`` is that of the first map."""
+    """Say what the walk achieves; ``kind`` is that of the first map."""
     if made.kind == "settled":
         if every:
             return f"settled: the only map that is {kind}, and it is closed"
@@ -169,7 +174,7 @@ def _verdict(kind: str, many: int, made: Plan, every: bool) -> str:
 
 
 def _why(pair: Untold) -> str:
-    """Why the walk does not tell two maps apart."""
+    """Say why the walk does not tell two maps apart."""
     if pair.why == "walk":
         return "another walk tells them apart"
     proof = f"{words.number(len(pair.related), 'pair')} of dstates, checked"

@@ -1,4 +1,4 @@
-"""Proofs that no walk tells maps apart: to be kept in a file, and checked without a solver."""
+"""Proofs that no walk tells maps apart, which a file keeps and no solver is needed to check."""
 
 import json
 from collections.abc import Iterator, Sequence
@@ -18,7 +18,7 @@ from topomap.runtime.errors import InputError
 
 
 def proofs(planned: Planned) -> dict[str, Any]:
-    """The proofs of a plan, as a document that ``check_proofs`` takes."""
+    """The proofs of a plan, as a document that ``check_proofs`` accepts."""
     return {
         "horizon": planned.among.experience.steps,
         "marker": planned.marker,
@@ -37,16 +37,19 @@ def proofs(planned: Planned) -> dict[str, Any]:
 
 @dataclass(frozen=True, repr=False)
 class Checked(Reply):
-    """What came of checking ``proofs`` of them: a line for each that is ``wrong``. They are about
-    the first ``steps`` of ``whole`` steps."""
+    """What came of checking ``proofs`` proofs: a line for each that is ``wrong``.
+
+    They are about the first ``steps`` of ``whole`` steps.
+    """
 
     proofs: int
     wrong: tuple[str, ...]
     steps: int
     whole: int
-    fault: None = None  # to check takes no time to speak of, so it is never cut
+    fault: None = None  # a check takes very little time, so it is never cut short
 
     def lines(self) -> Iterator[str]:
+        """The result as the lines that ``topomap explore --check`` prints."""
         first = f", of the first {self.steps} of {self.whole} steps"
         of = first * (self.steps < self.whole)
         told = f"{words.number(self.proofs, 'proof')}, {len(self.wrong) or 'none'} wrong{of}"
@@ -54,12 +57,16 @@ class Checked(Reply):
         yield told
 
     def document(self) -> dict[str, Any]:
+        """The result as ``topomap explore --check --json`` writes it."""
         return {"proofs": self.proofs, "wrong": list(self.wrong)}
 
 
 def check_proofs(path: str, experience: Experience) -> Checked:
-    """Check the proofs in a file, which are about an experience or its first steps. Raises
-    InputError, one line, if there are none in it."""
+    """Check the proofs in a file, which are about an experience or its first steps.
+
+    Raises:
+        InputError: There are no proofs in it. One line.
+    """
     try:
         data = json.loads(files.read_text(path, maps.MOST_BYTES_OF_MAPS))
         formats.demand(path, data)
@@ -80,7 +87,7 @@ def check_proofs(path: str, experience: Experience) -> Checked:
         for name in lying.keys() - {None}:
             landmarks[at[lying[name]][0]] |= {f"marker({name})"}
         lies = at[lying[None]][0] if None in lying else None
-        # A compass counts if each visit has it.
+        # A compass counts only if each visit has one.
         slots = [slot for slot in experience.compass if slot is not None]
         north = {place: slots[place] for place, _ in at} if len(slots) == len(at) else {}
         rest = landmarks, lies, north, experience.across(grown.stars)
@@ -98,14 +105,20 @@ def check_proofs(path: str, experience: Experience) -> Checked:
 def _proof_of(
     where: str, proof: Any, charts: Sequence[Chart]
 ) -> tuple[Chart, Chart, str, list[Pair]]:
-    """A proof of a file. Raises InputError where it is none."""
+    """Read a proof of a file.
+
+    Raises:
+        InputError: It is none.
+    """
 
     def number(value: Any) -> int:
+        """Read a number."""
         if not isinstance(value, int) or isinstance(value, bool):
             raise ValueError
         return value
 
     def dstate(value: Any) -> DState:
+        """Read a dstate."""
         place, slot = value
         return number(place), number(slot)
 

@@ -1,7 +1,7 @@
-"""Reasons in words: what a map would be like that breaks one rule, spelled out from that map.
+"""Reasons in words: what a map would be like that breaks one rule, spelt out from that map.
 
-The map need not be sound in other ways; a gateway of it may have two links. So what is told goes
-by the visits, as the rules in ``encodings/theory/`` do, and not by the links.
+The map may break other rules, too; a gateway of it may have two links. So what is said goes by the
+visits, as the rules in ``encodings/theory/`` do, and not by the links.
 """
 
 import re
@@ -44,10 +44,10 @@ RULES = {
     "travelled": "travelled",
     "closed": "closed",
 }
-RULE_NAMES = tuple(RULES)  # those named first are what an explanation prefers to be made of
+RULE_NAMES = tuple(RULES)  # explanations prefer the rules that come first
 KNOWN = ("compass", "odometry", "length", "same", "apart")  # what is known besides views
-FIRST = RULE_NAMES.index("bound")  # so many are of every map, and not of demands
-# What a whole rule says, by its words in RULES.
+FIRST = RULE_NAMES.index("bound")  # the rules before it hold of every map; the others are demands
+# The full sentence of a whole rule, by its text in RULES.
 WHOLE = {
     "odometry": "visits that are too far apart by their odometry are of two places",
     "gateway unification": "who leaves by the gateway where a step arrived goes back on its link",
@@ -60,14 +60,17 @@ WHOLE = {
     "travelled": "each path holds two places or more",
     "closed": "each gateway has a link",
 }
-BY_STEP = ("view", "compass", "length")  # what is told of each of two steps, and compared
+BY_STEP = ("view", "compass", "length")  # what is compared between two steps
 Node = tuple[int, int]  # a run, and a visit on it
 
 
 @dataclass(frozen=True)
 class Told:
-    """A reason in words, the steps that it names, and if it is about a walk (along a path, or
-    round a cycle), its visits and their places."""
+    """A reason in words, and the steps that it names.
+
+    If it is about a walk along a path or round a cycle, it has the visits of the walk and their
+    places.
+    """
 
     words: str
     steps: tuple[int, ...]
@@ -77,8 +80,10 @@ class Told:
 
 @dataclass(frozen=True)
 class Broken:
-    """A map that breaks a rule: dstates by step, and how many faces there are too few: ``euler``
-    is |V| - |E| + faces."""
+    """A map that breaks a rule, as dstates by step.
+
+    ``euler`` is |V| - |E| + faces, which tells how many faces are missing.
+    """
 
     experience: Experience
     at: tuple[DState, ...]
@@ -86,9 +91,11 @@ class Broken:
 
     @property
     def slots(self) -> int:
+        """The number of slots."""
         return self.experience.slots
 
     def place(self, step: int) -> int:
+        """The place of a visit."""
         return self.at[step][0]
 
     def left_by(self, step: int) -> DState:
@@ -96,8 +103,11 @@ class Broken:
         return self.experience.way_out(step, self.at[step - 1])
 
     def opposite(self, heading: DState) -> int:
-        """The slot straight across the place of a gateway, or that gateway again; that of a path
-        which ends at gateway S, where it is told which gateways are on one path, is -1 - S."""
+        """The slot opposite to a gateway, or from such a slot the gateway again.
+
+        Where it is told which gateways are on one path, it is -1 - S for a path that ends at
+        gateway S.
+        """
         return self._world.opposite(heading)[1]
 
     @cached_property
@@ -106,7 +116,7 @@ class Broken:
 
     @cached_property
     def runs(self) -> dict[int, dict[int, int]]:
-        """Of each run its visits, each with the slot of the place for which the run heads."""
+        """For each run its visits, each with the slot to which the run heads there."""
         runs: dict[int, dict[int, int]] = {}
         rested = True
         for step, turn in enumerate(self.experience.turns, 1):
@@ -120,7 +130,7 @@ class Broken:
         return runs
 
     def touching(self, node: Node) -> Iterator[Node]:
-        """The same place on the same path, on any run."""
+        """The visits of the same place on the same path, on any run."""
         _, step = node
         for other, visits in self.runs.items():
             for visit, heading in visits.items():
@@ -128,21 +138,23 @@ class Broken:
                     yield other, visit
 
     def _on_one(self, node: Node, heading: int) -> bool:
-        """Whether a heading at the place of a visit is on the path of its run."""
+        """Tell whether a heading at the place of a visit is on the path of its run."""
         run, step = node
         ahead = self.runs[run][step]
         return heading in (ahead, self.opposite((self.place(step), ahead)))
 
     def crossing(self, node: Node, other: int) -> Iterator[Node]:
-        """The same place on another run, which heads another way there."""
+        """The visits of the same place on another run that has another heading there."""
         _, step = node
         for visit, heading in self.runs[other].items():
             if self.place(visit) == self.place(step) and not self._on_one(node, heading):
                 yield other, visit
 
     def along(self, start: Node, goals: set[Node], straight: bool) -> list[int] | None:
-        """The visits of a shortest walk along a path; if it is not to be straight on, also from
-        one link of a gateway to another one."""
+        """The visits of a shortest walk along a path.
+
+        If it need not go straight on, it may also go from one link of a gateway to another link.
+        """
         before: dict[tuple[Node, int], tuple[Node, int, bool]] = {}
         waiting = deque((start, sign, (start, sign, False)) for sign in (1, -1))
         while waiting:
@@ -167,7 +179,7 @@ class Broken:
         return None
 
     def crossed(self, a: int, b: int) -> list[int] | None:
-        """A shortest walk along the path of two runs, from a place to where it crosses it."""
+        """A shortest walk along the path of two runs, from a place until it comes there again."""
         for straight in (True, False):
             walks = [
                 walk
@@ -180,7 +192,7 @@ class Broken:
         return None
 
     def crossed_by_itself(self, a: int) -> list[int] | None:
-        """A shortest walk along the path of a run, from a place to where it crosses it."""
+        """A shortest walk along the path of a run, from a place until it comes there again."""
         path, waiting = {a}, [a]
         for run in waiting:
             met = {other for step in self.runs[run] for other, _ in self.touching((run, step))}
@@ -207,7 +219,7 @@ class Broken:
         return min(walks, key=len, default=None)
 
     def _next(self, node: Node, sign: int) -> tuple[Node, int] | None:
-        """The next visit straight on, and whether it is with its run or against it."""
+        """The next visits straight on, and whether they follow the direction of their run."""
         for run, step in [node, *self.touching(node)]:
             with_it = self.runs[run][step] == self.runs[node[0]][node[1]]
             way = sign if with_it else -sign
@@ -216,8 +228,12 @@ class Broken:
         return None
 
     def cycle(self, chord: int) -> tuple[list[int], list[int]]:
-        """What a chord closes in the tree of the links by which places were first reached: the
-        steps of its links, the chord's last, and its places, from the one where the chord ends."""
+        """The cycle that a chord closes in the tree of links by which places were first reached.
+
+        Returns:
+            The steps of its links, the chord last, and its places, from the one where the chord
+            ends.
+        """
         ends = []
         for place in (self.place(chord), self.place(chord - 1)):
             line = [place]
@@ -231,7 +247,7 @@ class Broken:
         return [*there[:-1], *here[-2::-1], chord], [*there, *here[-2::-1], there[0]]
 
     def tell(self, kind: str, arguments: Sequence[int], common: Sequence[Sequence[int]]) -> Told:
-        """A reason that this map breaks, in words; ``common`` has the places where paths meet."""
+        """Put a reason that this map breaks into words; ``common`` has places where paths meet."""
         if kind == "view":
             return told_views(self.experience, arguments, self.at)
         if kind in ("schema", "unification"):
@@ -338,13 +354,16 @@ def kind_of(name: str) -> str:
 
 
 def numbers_of(name: str) -> tuple[int, ...]:
-    """The numbers in the name of a reason, which mostly are steps."""
+    """The numbers in the name of a reason; most of them are steps."""
     return tuple(map(int, re.findall(r"\d+", name)))
 
 
 def gathered(name: str) -> tuple[str, ...]:
-    """The gathered reasons of which a single one is a part; it is given up without any of them.
-    They are what is told of a step, or a whole rule; or itself, if it is about one thing told."""
+    """The gathered reasons of which a single one is a part; it needs all of them.
+
+    They are all that is told of a step, or a whole rule; or the reason itself, if it is about one
+    thing that is told.
+    """
     kind = kind_of(name)
     if kind in BY_STEP:
         return tuple(f"{kind}({step})" for step in numbers_of(name))
@@ -352,17 +371,17 @@ def gathered(name: str) -> tuple[str, ...]:
 
 
 def is_gathered(name: str) -> bool:
-    """Whether an answer of gathered reasons has gathered this one, and not left it as it is."""
+    """Tell whether a reason of a gathered answer is gathered, and not a single one."""
     return name in WHOLE or of_one_step(name)
 
 
 def of_one_step(name: str) -> bool:
-    """Whether it is a gathered reason of what is told of one step."""
+    """Tell whether a reason is gathered from all that is told of one step."""
     return kind_of(name) in BY_STEP and len(numbers_of(name)) == 1
 
 
 def told_gathered(experience: Experience, name: str, bound: int | None) -> Told:
-    """A gathered reason in words."""
+    """Put a gathered reason into words."""
     kind, steps = kind_of(name), numbers_of(name)
     if name == "bound":
         return Told(f"there are at most {number(bound or 0, 'place')}", ())
@@ -379,7 +398,7 @@ def told_gathered(experience: Experience, name: str, bound: int | None) -> Told:
 
 
 def told_plainly(kind: str, arguments: Sequence[int]) -> Told:
-    """A reason in words, without a map that breaks it."""
+    """Put a reason into words without a map that breaks it."""
     steps = _named("step", arguments)
     words = {
         "unification": f"{steps} go by one link, there and back",
@@ -401,7 +420,7 @@ def told_plainly(kind: str, arguments: Sequence[int]) -> Told:
 
 
 def told_gateway(kind: str, place: int, slot: int) -> Told:
-    """A gateway that has no link."""
+    """Describe a gateway that has no link."""
     if kind == "closed":
         return Told(f"gateway {place}.{slot} would be pending", (place,))
     words = f"the path through slot {slot} of place {place} would hold no other place"
@@ -411,7 +430,7 @@ def told_gateway(kind: str, place: int, slot: int) -> Told:
 def told_views(
     experience: Experience, steps: Sequence[int], at: Sequence[DState] | None = None
 ) -> Told:
-    """Two views that differ."""
+    """Describe two views that differ."""
     slots, (step, visit) = experience.slots, steps
     view, other = experience.views[step], experience.views[visit]
     signs = experience.landmarks[step], experience.landmarks[visit]
@@ -442,7 +461,7 @@ def told_views(
 
 
 def _seen(experience: Experience, step: int, signs: bool = False) -> str:
-    """The gateways seen after a step, and the landmarks, if there are some or it matters."""
+    """Describe the gateways seen after a step, and the landmarks if they matter."""
     names = sorted(experience.landmarks[step])
     text = " ".join(map(str, sorted(experience.views[step])))
     if not signs and not names:
@@ -453,7 +472,7 @@ def _seen(experience: Experience, step: int, signs: bool = False) -> str:
 def told_known(
     experience: Experience, kind: str, steps: Sequence[int], at: Sequence[DState] | None = None
 ) -> Told:
-    """What is known besides views, of two steps."""
+    """Describe what is known of two steps besides views."""
     one, other = steps
     if kind == "compass":
         slots = [experience.compass[step] for step in steps]
@@ -482,13 +501,13 @@ def told_known(
 
 
 def told_assumed(experience: Experience, number: int) -> Told:
-    """A statement that is taken for granted; it is that of this number."""
+    """Describe the assumption that has this number."""
     term, holds = sorted(experience.assumed)[number]
     return Told(statement_text(term, holds), ())
 
 
 def _far(experience: Experience, one: int, other: int) -> str:
-    """How far apart two visits are by odometry."""
+    """Describe how far apart two visits are by odometry."""
     moved = [shift for shift in experience.shifts[one:other] if shift]
     apart = max(abs(sum(shift[axis] for shift in moved)) for axis in (0, 1))
     way = sum(abs(x) + abs(y) for x, y in moved)
@@ -500,12 +519,12 @@ def _far(experience: Experience, one: int, other: int) -> str:
 
 
 def _decimal(number: Fraction) -> str:
-    """A number of whole hundredths."""
+    """Write a number of hundredths as a decimal."""
     return f"{float(number):.2f}".rstrip("0").rstrip(".")
 
 
 def told_marker(experience: Experience, step: int, at: Sequence[DState] | None = None) -> Told:
-    """What is seen of the marker, and where it lies."""
+    """Describe what is seen of the marker, and where it lies."""
     lying = [(down, seen, name) for at_, down, seen, name in experience.lying() if at_ == step]
     wrong = [
         (down, seen, name)
@@ -528,5 +547,5 @@ def _pairs(paths: Sequence[int]) -> list[tuple[int, int]]:
 
 
 def _named(noun: str, numbers: Sequence[int]) -> str:
-    """Such as "steps 3 4 5"."""
+    """Name numbers with their noun, as in "steps 3 4 5"."""
     return f"{plural(len(numbers), noun)} {' '.join(map(str, numbers))}"

@@ -1,6 +1,6 @@
 """What is known of an experience that is told line by line.
 
-Each line is a step, in JSON or in facts, or takes steps back; it is read on top of what is
+Each line is a step, in JSON or in facts, or takes steps back. It makes a new record from what is
 known, so that a line with a fault changes nothing.
 """
 
@@ -28,8 +28,8 @@ from topomap.model.terms import cut_short, spelt
 from topomap.runtime.errors import InputError
 from topomap.runtime.limits import DRIFT, STRETCH
 
-KNOWN = {**SIGNATURES, "undo": "undo(N)"}  # of which undo is a line by itself
-KNOWN_KEYS = {  # of a step in JSON, with what each wants
+KNOWN = {**SIGNATURES, "undo": "undo(N)"}  # "undo" stands alone in its line
+KNOWN_KEYS = {  # the keys of a step in JSON, with the values that each accepts
     "compass": "a slot",
     "shift": "a list of two whole numbers",
     "length": "a whole number",
@@ -47,7 +47,7 @@ class LineFault(ValueError):
 
 @dataclass(frozen=True)
 class Record:
-    """What was read. Of the last step something may be missing; those before it are ``done``."""
+    """What was read; the last step may be incomplete, and those before it are ``done``."""
 
     slots: int | None = None
     done: Growing[Step] = field(default_factory=Growing)
@@ -56,16 +56,16 @@ class Record:
     stretch: int = STRETCH
     tolerance: int = 0
     one_log: bool = False  # whether no new log may begin
-    # After each step that is done: the markers that lie somewhere, and how far the shifts come.
+    # For each complete step: the markers that lie somewhere, and the sum of the shifts.
     _states: Growing[State] = field(default_factory=Growing, compare=False, repr=False)
 
     @property
     def steps(self) -> Growing[Step]:
-        """The steps, of the last of which something may be missing."""
+        """The steps, of which the last may be incomplete."""
         return self.done if self.last is None else self.done.then(self.last)
 
     def lack(self) -> str | None:
-        """What the last step lacks."""
+        """What is missing from the last step."""
         if self.last is None:
             return None
         last, step = self.last, len(self.done)
@@ -84,11 +84,15 @@ class Record:
         return None
 
     def whole(self) -> Growing[Step]:
-        """The steps of which all is known."""
+        """The steps that are complete."""
         return self.done if self.lack() else self.steps
 
     def with_line(self, line: str, source: str, number: int) -> "Record":
-        """The record with one more line. Raises InputError if the line has a fault."""
+        """Add one more line.
+
+        Raises:
+            InputError: The line has a fault.
+        """
         text = line.strip()
         try:
             if text.startswith(("{", "[")):
@@ -136,8 +140,12 @@ class Record:
         return self._seen(first, landmark=str(arguments[1]))
 
     def _state(self) -> State:
-        """What is so after the last step. Raises LineFault, if what is told of markers cannot be,
-        or clingo's numbers do not hold what comes of shifts and lengths."""
+        """What holds after the last step.
+
+        Raises:
+            LineFault: What is told of markers is impossible, or a sum of shifts or lengths is too
+                large for clingo.
+        """
         out, far = self._states[-1] if self.done else (frozenset(), 0)
         last, number = self.last, len(self.done)
         if last is None:
@@ -158,12 +166,16 @@ class Record:
         return out, far + abs(x) + abs(y)
 
     def _with_last(self, **changed: Any) -> "Record":
-        """The record, where this is known of the last step."""
+        """Change what is known of the last step."""
         assert self.last is not None
         return replace(self, last=replace(self.last, **changed))
 
     def with_slots(self, slots: int) -> "Record":
-        """The record with the number of slots. Raises LineFault."""
+        """Set the number of slots.
+
+        Raises:
+            LineFault: It is impossible.
+        """
         if self.slots is not None:
             raise LineFault("slots are told twice")
         if fault := slots_fault(slots):
@@ -173,13 +185,13 @@ class Record:
         return replace(self, slots=slots)
 
     def _with_thing(self, step: int, kind: str, name: str) -> "Record":
-        """The record with what is done with a marker that has a name."""
+        """Add what is done with a marker that has a name."""
         record = self._seen(step)
         assert record.last is not None
         return record._with_last(things=record.last.things | {(kind, name)})
 
     def _rested(self, step: int, kind: str) -> "Record":
-        """The record with a step that is no travel."""
+        """Add a step that is not a travel."""
         record = self._seen(step)
         assert record.last is not None
         known = record.last
@@ -192,13 +204,13 @@ class Record:
             said = "it has a turn, but begins a log" if kind == "start" else "a look has no turn"
             raise LineFault(f"step {step}: {said}")
         if known.length is not None:
-            raise LineFault(f"step {step}: there is a length, but it is no travel")
+            raise LineFault(f"step {step}: there is a length, but it is not a travel")
         if (kind == "start" and known.look) or (kind == "look" and known.start):
             raise LineFault(f"step {step}: it begins a log, and is a second look")
         return record._with_last(**{kind: True})
 
     def _known(self, step: int, name: str, value: Any) -> "Record":
-        """The record with what is known besides views of the last step, or of the next one."""
+        """Add what is known besides views of the last step, or of the next one."""
         record = self._seen(step)
         assert record.slots is not None
         assert record.last is not None
@@ -210,13 +222,13 @@ class Record:
         if name != "compass" and step == 0:
             raise LineFault(f"step 0: there is a {name}, but step 1 is the first that moves")
         if name == "length" and (known.start or known.look):
-            raise LineFault(f"step {step}: there is a length, but it is no travel")
+            raise LineFault(f"step {step}: there is a length, but it is not a travel")
         if name == "length" and value <= 0:
             raise LineFault(f"step {step}: length {value} is not above 0")
         return record._with_last(**{name: value})
 
     def _paired(self, name: str, one: int, other: int) -> "Record":
-        """The record with two steps after which the agent was at one place, or at two."""
+        """Add two steps after which the agent was at one place, or at two."""
         earlier, step = sorted((one, other))
         if earlier < 0:
             raise LineFault(f"step {earlier}: steps are numbered from 0")
@@ -226,8 +238,10 @@ class Record:
         return record._with_last(**{name: getattr(record.last, name) | {earlier}})
 
     def _on_one_path(self, step: int, one: int, other: int) -> "Record":
-        """The record with two gateways of a visit that are on one path, or with one that ends its
-        path, which is told as a pair with itself."""
+        """Add two gateways of a visit that are on one path.
+
+        A gateway that ends its path is told as a pair with itself.
+        """
         record = self._seen(step)
         assert record.slots is not None
         if record.done and record.done[0].straight is None:
@@ -253,7 +267,7 @@ class Record:
         landmark: str | None = None,
         mark: str | None = None,
     ) -> "Record":
-        """The record with one more fact: of the last step, or of the next one."""
+        """Add one more fact about the last step, or about the next one."""
         if self.slots is None:
             raise LineFault("no slots(K) before the first step")
         last = len(self.done) - (self.last is None)
@@ -274,7 +288,7 @@ class Record:
             if known.turn not in (None, turn):
                 raise LineFault(f"step {step}: more than one turn")
             if known.start or known.look:
-                raise LineFault(f"step {step}: it has a turn, and is no travel")
+                raise LineFault(f"step {step}: it has a turn, but is not a travel")
             before = self.done[step - 1] if step == last or self.last is None else self.last
             if turn not in before.view:
                 raise LineFault(f"step {step}: turn {turn}: no gateway there after step {step - 1}")
@@ -291,7 +305,11 @@ class Record:
         return replace(self, done=self.done.then(self.last), last=known, _states=states)
 
     def undone(self, steps: int) -> "Record":
-        """The record without its last steps. Raises LineFault if there are not as many."""
+        """Take the last steps back.
+
+        Raises:
+            LineFault: There are not as many.
+        """
         last = len(self.done) - (self.last is None)
         if not 0 < steps <= last:
             has = words.number(max(last, 0), "step")
@@ -305,9 +323,13 @@ class Record:
         )
 
     def with_object(self, data: dict[str, Any]) -> "Record":
-        """The record with what a JSON object says: a step, whole, or how many to take back.
-        Raises LineFault."""
-        data = {key: value for key, value in data.items() if value is not None}  # null: not told
+        """Add what a JSON object says: a complete step, or how many steps to take back.
+
+        Raises:
+            LineFault: It is impossible.
+        """
+        # Null means that it is not told.
+        data = {key: value for key, value in data.items() if value is not None}
         begins = self.slots is None
         known = {"slots" if begins else "turn", "view", "landmarks", *MARKER, *KNOWN_KEYS, *RESTS}
         if data.keys() == {"undo"}:
@@ -367,7 +389,8 @@ class Record:
             if name in data and not _fits(name, value):
                 raise LineFault(f"{name}: {KNOWN_KEYS[name]} is wanted")
             if name == "straight" and name in data:
-                for pair in value or [[0, 0]]:  # none: gateway 0 ends its path, as all do
+                # Without pairs each gateway ends its path; this says so of gateway 0.
+                for pair in value or [[0, 0]]:
                     record = record._on_one_path(step, *pair)
                 continue
             for other in value or () if name in PAIRS else ():
@@ -383,8 +406,10 @@ class Record:
 
 
 def _names(kind: str, value: Any) -> list[str | None]:
-    """Which markers are put down, taken up or seen: true means the one that has no name, a text one
-    that has, and a list several."""
+    """Read which markers are put down, taken up or seen.
+
+    True means the marker that has no name, a text is the name of a marker, and a list has several.
+    """
     found: list[str | None] = []
     for one in value if isinstance(value, list) else [value]:
         if isinstance(one, bool):
@@ -400,7 +425,7 @@ def _names(kind: str, value: Any) -> list[str | None]:
 
 
 def _fits(name: str, value: Any) -> bool:
-    """Whether a value of a JSON object is what such a key wants."""
+    """Tell whether a value of a JSON object is what its key wants."""
     if name in ("compass", "length"):
         return is_number(value)
     if name == "straight":

@@ -1,10 +1,10 @@
-"""A robot in a world that it does not know: it maps by this program alone.
+"""A robot in a world that it does not know, which maps the world by this program alone.
 
-It thinks of the best maps of what it has seen (``solving.best``), walks what ``explore`` plans
-for them, and stops when the best map is closed and the only one, or when no walk can tell the
-best ones apart. But a closed map that has exceptions to consistent boundaries is often false: one
-that is small explains much. So, before it believes one, the robot walks what is planned for the
-maps without exceptions, until they are all too large (``rivals``).
+It considers the best maps of what it has seen (``solving.best``), and walks what ``explore`` plans
+for them. It stops when the best map is closed and the only one, or when no walk can tell the best
+ones apart. But a closed map that has exceptions to consistent boundaries is often false, because a
+small map explains much. So, before it believes one, the robot walks what is planned for the maps
+without exceptions, until they are all too large (``rivals``).
 """
 
 import contextlib
@@ -31,10 +31,10 @@ from topomap.worlds.instance import NOTHING, measured
 from topomap.worlds.senses import Senses
 from topomap.worlds.tours import tour as tour_of
 
-MOST_MAPS = 100  # best maps of which a walk is planned, while none is closed
-LARGER = 50  # percent more places than a closed map with exceptions may a map without any have
-WALKS = 101  # random walks, of which the median is told
-ENDED = ("settled", "bisimilar", "no map")  # the ways to end that are no limit
+MOST_MAPS = 100  # a walk is planned for at most so many best maps
+LARGER = 50  # percent: so many more places may a rival of a closed map with exceptions have
+WALKS = 101  # the number of random walks for the median
+ENDED = ("settled", "bisimilar", "no map")  # the ways to end that are not a limit
 ENDS = {
     "settled": "one closed map is optimal",
     "bisimilar": "no walk can tell the optimal maps apart",
@@ -42,19 +42,21 @@ ENDS = {
     "steps": "as many steps as it may walk; partial: steps",
 }
 HEAD = "environment", "places", "ways", "signs", "steps", "tour", "random", "maps", "truth"
-OFTEN = 1000  # steps of a random walk between two looks at the watch
-PATIENCE = 1000  # times as many steps as there are ways, after which a random walk is given up
+OFTEN = 1000  # the number of steps of a random walk between two looks at the watch
+PATIENCE = 1000  # a random walk is given up after so many steps for each way
 
 
 @dataclass(frozen=True)
 class Outcome:
-    """How an exploration ended: ``end`` is "settled" (one closed optimal map), "bisimilar"
-    (several closed ones that no walk tells apart), "steps" (enough of them) or why it was cut.
+    """How an exploration ended.
 
-    ``maps`` are the best maps of the end; ``truth`` says whether the hypothesis that is so is
-    among them, and its map the whole world; None where that is open: the robot could go no
-    further, or there may be more best maps than were kept. ``whole`` tells whether the best maps
-    are all that there are. ``query`` is what was taken for granted of them.
+    ``end`` is "settled" (one closed map is optimal), "bisimilar" (there are several closed ones
+    that no walk tells apart), "steps" (it has walked as many as it may), or why it was cut short.
+
+    ``maps`` are the best maps at the end. ``truth`` tells whether the real hypothesis is among them
+    and its map is the whole world. It is None if that is open: the robot could go no further, or
+    there may be more best maps than were kept. ``whole`` tells whether the best maps are all that
+    there are. ``query`` is what was taken for granted.
     """
 
     world: TopologicalMap
@@ -69,31 +71,35 @@ class Outcome:
 
     @property
     def steps(self) -> int:
+        """The number of steps that the robot walked."""
         return self.experience.steps
 
     @property
     def tour(self) -> int | None:
-        """How long a tour over every way is, by one who knows the map; None if it was not found."""
+        """The length of a tour over every way with the map known; None if none was found."""
         return self.others.tour
 
     @property
     def random(self) -> int | None:
-        """The median number of steps in which random walks take every way; None if most do not
-        within PATIENCE steps a way, or were not walked to the end."""
+        """The median number of steps in which random walks take every way.
+
+        It is None if most of them need more than PATIENCE steps for each way, or were not walked to
+        the end.
+        """
         return self.others.random
 
     @property
     def fault(self) -> str | None:
-        """Why the robot, or what it is compared with, did not come to an end, if so."""
+        """Why the robot, or what it is compared with, did not come to an end; or None."""
         return self.others.fault or (None if self.end in ENDED else self.end)
 
     @property
     def found(self) -> bool:
-        """Whether it came to one closed map, which is the truth."""
+        """Whether it came to one closed map, which is the real one."""
         return self.end == "settled" and bool(self.truth)
 
     def document(self) -> dict[str, Any]:
-        """What is told of it."""
+        """What is told of the exploration, as JSON."""
         return {
             "places": len(self.world.stars),
             "ways": len(self.world.links) // 2,
@@ -107,7 +113,7 @@ class Outcome:
         }
 
     def lines(self, name: str) -> Iterator[str]:
-        """The same to read; ``name`` is the environment's."""
+        """What is told of the exploration, as lines to read; ``name`` is the environment's."""
         world = self.world
         ways = len(world.links) // 2
         signs = number(len(world.landmarks), "sign")
@@ -131,7 +137,7 @@ class Outcome:
         yield from self.others.lines()
 
     def _end(self) -> str:
-        """How it ended, in words."""
+        """How the exploration ended, in words."""
         if self.end == "bisimilar" and len(self.maps) == MOST_MAPS:
             return f"no walk can tell {MOST_MAPS} of the optimal maps apart"
         return ENDS.get(self.end, f"partial: {self.end}")
@@ -139,15 +145,18 @@ class Outcome:
 
 @dataclass(frozen=True)
 class Others:
-    """What a robot is compared with: a tour by one who knows the map, and random walks, in steps.
-    What is missing is None: out of reach, or cut, if ``fault`` says why."""
+    """What a robot is compared with, in steps.
+
+    It has a tour by somebody who knows the map, and random walks. What is missing is None: it is
+    out of reach, or was cut short if ``fault`` says why.
+    """
 
     tour: int | None
     random: int | None
     fault: str | None = None
 
     def lines(self) -> Iterator[str]:
-        """The same to read."""
+        """The comparison as lines to read."""
         missing = f"not known; partial: {self.fault}" if self.fault else "not within reach"
         tour = missing if self.tour is None else number(self.tour, "step")
         yield f"a tour over every way, by one who knows the map: {tour}"
@@ -156,7 +165,7 @@ class Others:
 
 
 def table(rows: Sequence[dict[str, Any]]) -> str:
-    """What came of several robots, a line each; then of how many the truth."""
+    """Write a table of several robots, one in each line, and how many found the real map."""
     lines: list[tuple[str, ...]] = [HEAD]
     for row in rows:
         maps = row["best_maps"]
@@ -182,9 +191,13 @@ def table(rows: Sequence[dict[str, Any]]) -> str:
 def start_of(
     environment: Environment, place: str | None = None, facing: int | None = None
 ) -> tuple[Environment, Gateway]:
-    """What can be walked to in an environment from a place (the smallest, unless told), and the
-    gateway there where the robot stands first (the smallest, too). Raises InputError where there
-    is no such place or gateway."""
+    """Find the part of an environment that can be reached from a place, and the first gateway.
+
+    By default it is the smallest place, and its smallest gateway.
+
+    Raises:
+        InputError: There is no such place or gateway.
+    """
     stars = environment.map.stars
     start = environment.place(place) if place is not None else min(stars)
     slot = min(stars[start]) if facing is None else facing
@@ -194,7 +207,7 @@ def start_of(
 
 
 def reached(world: TopologicalMap, start: Place) -> TopologicalMap:
-    """The part of a world that can be walked to."""
+    """The part of a world that can be reached."""
     graph = nx.Graph((a[0], b[0]) for a, b in world.edges())
     there = nx.node_connected_component(graph, start)
     return TopologicalMap(
@@ -206,11 +219,11 @@ def reached(world: TopologicalMap, start: Place) -> TopologicalMap:
 
 
 def others(world: TopologicalMap, start: Place, watch: Watch) -> Others:
-    """What a robot in a world is compared with. The watch may end the work."""
+    """Find what a robot in a world is compared with; the watch may end the work."""
     tour = random = None
     with Attempt() as attempt:
         watch.phase("a tour")
-        with contextlib.suppress(InputError):  # too large a world
+        with contextlib.suppress(InputError):  # the world may be too large
             tour = len(tour_of(world, start, watch))
         watch.phase("random walks")
         random = random_walk(world, start, watch=watch)
@@ -220,14 +233,14 @@ def others(world: TopologicalMap, start: Place, watch: Watch) -> Others:
 def random_walk(
     world: TopologicalMap, start: Place, walks: int = WALKS, watch: Watch | None = None
 ) -> int | None:
-    """How many steps a random walk takes until it has gone every way: the median."""
+    """The median number of steps until random walks have gone every way."""
     lengths = [_length(world, start, seed, watch or Watch()) for seed in range(walks)]
     median = statistics.median_low(lengths)
     return None if median == float("inf") else int(median)
 
 
 def _length(world: TopologicalMap, start: Place, seed: int, watch: Watch) -> float:
-    """After how many steps a random walk has gone every way; infinite, if it has no patience."""
+    """The number of steps until a random walk has gone every way; infinite if it is given up."""
     ways = len(world.links) // 2
     taken: set[Gateway] = set()
     place = start
@@ -259,15 +272,15 @@ class Robot:
         self.dstate = self.world.links[place, self.route[-1]]
 
     def experience(self) -> Experience:
-        """What it did and saw."""
+        """What the robot did and saw."""
         return self._measured()[0]
 
     def _measured(self) -> tuple[Experience, tuple[DState, ...]]:
-        """The same, and the true hypothesis."""
+        """What the robot did and saw, and the true hypothesis."""
         return measured(self.environment, self.start, self.route, self.senses, self.drops)
 
     def sight(self) -> Prediction:
-        """What it sees where it is."""
+        """What the robot sees where it is."""
         world, place = self.world, self.dstate[0]
         marker = len(self.route) in self.experience().markers
         points = self.dstate[1] if self.senses.compass else None
@@ -275,7 +288,7 @@ class Robot:
         return Prediction(world.view(self.dstate), landmarks, marker, points)
 
     def mapped(self, maps: Sequence[Found]) -> bool:
-        """Whether one of the maps is the whole world, and the robot there where it thinks."""
+        """Tell whether one of the maps is the whole world, with the robot where it really is."""
         experience, truth = self._measured()
         whole = len(experience.map_of(truth).links) == len(self.world.links)
         return whole and any(one.at == truth for one in maps)
@@ -290,9 +303,11 @@ def simulate(
     marker: bool = False,
     senses: Senses = NOTHING,
 ) -> Outcome:
-    """A robot explores a world that it can walk through as a whole (see ``reached``), from a
-    gateway, for ``most`` steps at most. What the query has is taken for granted of its map;
-    ``senses`` tells what it measures besides views."""
+    """Let a robot explore a world, from a gateway, for at most ``most`` steps.
+
+    It must be possible to walk to every place of the world (see ``reached``). The parts of the
+    query are taken for granted; ``senses`` tells what the robot measures besides views.
+    """
     robot, world = Robot(environment, start, senses), environment.map
     maps: list[Found] = []
     end = ""
@@ -313,8 +328,13 @@ def simulate(
 def _go_on(
     robot: Robot, maps: Sequence[Found], query: Query, watch: Watch, most: int, marker: bool
 ) -> str:
-    """Walk what is planned for the best maps, or for their rivals, until one of them is refuted or
-    there is something new; or say why not."""
+    """Walk what is planned for the best maps, or for their rivals.
+
+    The walk ends when one of them is refuted, or when there is something new.
+
+    Returns:
+        Why the robot does not walk; an empty text if it does.
+    """
     if not maps:
         return "no map"
     experience = robot.experience()
@@ -328,7 +348,8 @@ def _go_on(
     slots = robot.world.slots
     plan = explore.plan(slots, standings, watch, proofs=False)
     if plan.kind == "bisimilar":
-        plan = explore.plan(slots, standings, watch, marker=carried)  # if it stays so, proved
+        # With proofs, in case it stays so.
+        plan = explore.plan(slots, standings, watch, marker=carried)
     if plan.kind in ("settled", "bisimilar") and not others:
         return plan.kind
     if not plan.turns:
@@ -336,7 +357,7 @@ def _go_on(
     walks = [predict(one, plan.turns, plan.drop) for one in standings]
     for nth, turn in enumerate(plan.turns):
         if len(robot.route) == most or turn not in robot.world.view(robot.dstate):
-            break  # (in the second case another map is true, and is told from these)
+            break  # (in the second case the real map is another one, and is told from these)
         if nth == plan.drop:
             robot.drops.append(len(robot.route))
         robot.step(turn)
@@ -347,21 +368,23 @@ def _go_on(
 
 
 def best(experience: Experience, query: Query, watch: Watch) -> list[Found]:
-    """The optimal maps, or else the best so far, in order; MOST_MAPS of them, if they are more."""
+    """Find the optimal maps, or those that are best so far, in order; at most MOST_MAPS."""
     return _first(solving.best(experience, query, watch, choice.hypotheses))
 
 
 def rivals(
     experience: Experience, query: Query, maps: Sequence[Found], watch: Watch
 ) -> list[Found]:
-    """Where the best maps are closed, and have exceptions: the maps without any, with the fewest
-    paths, then the fewest places, that have at most LARGER percent more places; in order, and
-    MOST_MAPS of them, if they are more. They have pending gateways, so a walk can test them. As
-    long as there are some, the best maps are not believed.
+    """Find the rivals of best maps that are closed and have exceptions.
+
+    They are the maps without any exception, with the fewest paths, then the fewest places, that
+    have at most LARGER percent more places; in order, and at most MOST_MAPS. They have pending
+    gateways, so a walk can test them. As long as there are some, the best maps are not believed.
 
     There is a limit because no walk excludes that each step came to a new place, and such a map
-    mostly has no exceptions. It is less than twice as many places: a map that is the closed one
-    twice over often has none, either, and no walk tells it from that."""
+    mostly has no exceptions. The limit is less than twice the number of places: a map that is a
+    double cover of the closed one often has no exceptions, either, and no walk tells it from that.
+    """
     if maps[0].kind != "optimal" or not maps[0].cost[0]:
         return []
     most = maps[0].cost[-1] * (100 + LARGER) // 100
@@ -371,6 +394,6 @@ def rivals(
 
 
 def _first(coming: Iterator[Found | None]) -> list[Found]:
-    """The best maps, in order; MOST_MAPS of them, if they are more."""
+    """The best maps in order; at most MOST_MAPS."""
     proved = (one for one in coming if one and one.proved)
     return sorted(islice(proved, MOST_MAPS), key=lambda one: one.at)

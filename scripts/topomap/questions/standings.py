@@ -1,4 +1,4 @@
-"""Maps in which an agent stands somewhere: what each predicts that will be seen."""
+"""Maps with the dstate of an agent, and what each predicts that will be seen."""
 
 from collections.abc import Hashable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -11,8 +11,10 @@ from topomap.search.living import Living, Told
 
 @dataclass(frozen=True)
 class Standing:
-    """A map, the dstate where the agent stands in it, and the place where the marker lies, if
-    it is out. ``compass``, if there is one, tells of each place the compass slot of its slot 0."""
+    """A map, the dstate of the agent in it, and the place of the marker if it lies somewhere.
+
+    ``compass``, if there is one, has the compass slot of slot 0 of each place.
+    """
 
     world: TopologicalMap
     dstate: Gateway
@@ -27,8 +29,11 @@ class Standing:
 
 
 def standing(experience: Experience, at: tuple[DState, ...]) -> Standing:
-    """The map of a hypothesis, and where the agent stands in it; the marker lies where it was
-    put down last, if it was not taken up since. A compass counts if each visit has it."""
+    """Make the map of a hypothesis with the dstate of the agent.
+
+    The marker lies where it was last put down, if it was not taken up since then. A compass counts
+    if each visit has one.
+    """
     down = experience.put_down().get(None)
     marker = None if down is None else at[down][0]
     world = experience.map_of(at)
@@ -38,7 +43,7 @@ def standing(experience: Experience, at: tuple[DState, ...]) -> Standing:
 
 
 def standing_of(told: Told, living: Living) -> Standing:
-    """The same of a hypothesis that is kept; it takes as long as the map is large."""
+    """Make the same of a hypothesis that is kept, in time proportional to the size of the map."""
     world, lying, visit = living.form.world(told), told.lying(), living.visit
     where = {name: visit.back(down).gateway // told.slots for name, down in lying.items()}
     landmarks = {**world.landmarks}
@@ -63,7 +68,7 @@ def signs(experience: Experience, at: Sequence[DState]) -> dict[Place, frozenset
 
 
 def orientation(experience: Experience, at: Sequence[DState]) -> dict[Place, int]:
-    """The compass slot of slot 0 of each place; empty if not each visit has a compass."""
+    """The compass slot of slot 0 of each place; empty unless each visit has a compass."""
     slots = [slot for slot in experience.compass[: len(at)] if slot is not None]
     if len(slots) < len(at):
         return {}
@@ -72,9 +77,12 @@ def orientation(experience: Experience, at: Sequence[DState]) -> dict[Place, int
 
 @dataclass(frozen=True)
 class Prediction:
-    """What a map says will be seen: gateways clockwise of the one arrived at, landmarks, and
-    whether the marker; the compass slot of the one arrived at, if there is a compass; and which
-    gateways are on one path, if that is told (each pair in both orders)."""
+    """What a map predicts that will be seen.
+
+    It has the gateways clockwise from the one of the arrival, the landmarks, and whether the marker
+    is there; the compass slot of the gateway of the arrival, if there is a compass; and which
+    gateways are on one path, if that is told (each pair in both orders).
+    """
 
     view: frozenset[int]
     landmarks: frozenset[str] = frozenset()
@@ -84,7 +92,7 @@ class Prediction:
 
     @property
     def signs(self) -> tuple[Hashable, ...]:
-        """What there is but gateways."""
+        """What is seen besides gateways."""
         pairs = tuple(sorted(self.straight or ()))
         return tuple(sorted(self.landmarks)), self.marker, self.compass, pairs
 
@@ -102,8 +110,10 @@ def sight(standing: Standing, dstate: Gateway, marker: Place | None) -> Predicti
 def predict(
     standing: Standing, turns: Sequence[int], drop: int | None = None
 ) -> tuple[Prediction | None, ...]:
-    """What a map says will be seen after each step of a walk; None once the walk goes through a
-    pending gateway, or cannot go on."""
+    """What a map predicts that will be seen after each step of a walk.
+
+    It is None once the walk goes through a pending gateway, or cannot go on.
+    """
     world, dstate, marker = standing.world, standing.dstate, standing.marker
     found: list[Prediction | None] = []
     for step, turn in enumerate(turns):
@@ -118,13 +128,15 @@ def predict(
 
 
 def tells(one: Sequence[Prediction | None], other: Sequence[Prediction | None]) -> bool:
-    """Whether a walk tells maps apart, by what they predict of it."""
+    """Tell whether a walk tells maps apart, by what they predict of it."""
     return any(a and b and a != b for a, b in zip(one, other, strict=True))
 
 
 def shape(standing: Standing) -> Hashable:
-    """What maps have in common that are the same but for the names of places, with the agent at
-    the same dstate."""
+    """A value that two maps share if they differ only in the names of places.
+
+    The agent must be at the same dstate, too.
+    """
     world, slots = standing.world, standing.world.slots
     first = {standing.dstate[0]: (0, standing.dstate[1])}
     form = []
@@ -146,7 +158,7 @@ def shape(standing: Standing) -> Hashable:
 
 
 def facts(maps: Iterable[tuple[int, Standing]]) -> str:
-    """Maps as facts for ``explore.lp`` and its like, places numbered in their order."""
+    """Maps as facts for ``explore.lp`` and similar programs, with places numbered in order."""
     lines: list[str] = []
     for number, standing in maps:
         world = standing.world

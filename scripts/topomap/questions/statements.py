@@ -1,5 +1,8 @@
-"""Statements about the maps of an exploration, as the commands take them: ``same(3,12)``,
-``places < 12``, ``not planar``; what they mean is in ``encodings/query.lp``."""
+"""Statements about the maps of an exploration, as the commands accept them.
+
+Examples are ``same(3,12)``, ``places < 12`` and ``not planar``. ``encodings/query.lp`` says what
+they mean.
+"""
 
 import re
 from collections.abc import Iterator
@@ -10,8 +13,9 @@ from topomap.model.vocabulary import FIGURES, QUALITIES, RELATIONS
 from topomap.model.words import number, short
 from topomap.runtime.errors import InputError
 from topomap.runtime.limits import LARGEST
+from topomap.runtime.near import meant
 
-if TYPE_CHECKING:  # who only reads a call need not load the solver
+if TYPE_CHECKING:  # parsing a call must not load the solver
     from topomap.model.experience import Experience
 
 SIGNS = {"number": ("=", "!="), "least": (">=", "<"), "most": ("<=", ">")}
@@ -24,9 +28,9 @@ _NUMBER = re.compile(r"[0-9]+")
 
 @dataclass(frozen=True)
 class Statement:
-    """A statement: ``holds(term)`` is to be true, or if not ``positive``, false.
+    """A statement: ``holds(term)`` is true, or false if the statement is not ``positive``.
 
-    ``note`` says why ``holds(term)`` cannot be, where that needs no reasoning.
+    ``note`` says why ``holds(term)`` is impossible, if that is plain without reasoning.
     """
 
     text: str
@@ -36,13 +40,16 @@ class Statement:
 
     @property
     def fact(self) -> str:
-        """What asks for it, for ``encodings/query.lp``."""
+        """The fact that asks for it in ``encodings/query.lp``."""
         return f"ask({self.term})."
 
 
 def parse_statement(text: str, experience: "Experience", command: str) -> Statement:
-    """The statement in a text, about an experience of which all steps count. Raises
-    InputError, one line that begins with the command."""
+    """Read the statement in a text, about an experience of which all steps count.
+
+    Raises:
+        InputError: It is none. One line that begins with the command.
+    """
     try:
         return _parsed(text, experience)
     except ValueError as fault:
@@ -70,7 +77,7 @@ def _parsed(text: str, experience: "Experience") -> Statement:
 
 
 def _unknown(word: str) -> str:
-    """What is wrong with a word."""
+    """Say what is wrong with a word."""
     if word in RELATIONS:
         return f"it is said of {', '.join(RELATIONS[word])}: {word}(...)"
     if word in FIGURES:
@@ -79,11 +86,12 @@ def _unknown(word: str) -> str:
         return "it is said of the whole map, without more"
     if word == "apart":
         return "no such word; write not same(T,U)"
-    return f"no such word; there are {', '.join(dict.fromkeys([*RELATIONS, *FIGURES, *QUALITIES]))}"
+    known = dict.fromkeys([*RELATIONS, *FIGURES, *QUALITIES])
+    return f"no such word; {meant(word, known) or 'there are ' + ', '.join(known)}"
 
 
 def _relation(name: str, arguments: list[str], experience: "Experience") -> tuple[str, str | None]:
-    """The term of such a statement, and why it cannot hold, if that is plain."""
+    """Make the term of such a statement, and say why it cannot hold, if that is plain."""
     kinds = RELATIONS.get(name)
     if kinds is None:
         raise ValueError(f"{_short(name)}: {_unknown(name)}")
@@ -101,7 +109,7 @@ def _relation(name: str, arguments: list[str], experience: "Experience") -> tupl
 
 
 def _plain(name: str, numbers: list[int], experience: "Experience") -> Iterator[str]:
-    """What is plainly wrong: a gateway that was not seen, or a place that was not yet."""
+    """Find what is plainly wrong: a gateway that was not seen, or a place of a later step."""
     if name == "at":
         step, place, slot = numbers
         if place > step:
@@ -114,8 +122,10 @@ def _plain(name: str, numbers: list[int], experience: "Experience") -> Iterator[
 
 
 def statement_text(term: str, positive: bool) -> str:
-    """The statement of a term of ``encodings/query.lp``, to read: ``most(place,8)`` is
-    ``places <= 8``."""
+    """Write the statement of a term of ``encodings/query.lp``.
+
+    The statement of ``most(place,8)`` is ``places <= 8``.
+    """
     name, _, arguments = term.rstrip(")").partition("(")
     if name not in SIGNS:
         return term if positive else f"not {term}"
@@ -125,10 +135,10 @@ def statement_text(term: str, positive: bool) -> str:
 
 
 def _comparison(figure: str, sign: str, text: str) -> tuple[str, bool]:
-    """The term of a comparison, and whether it says the same, or the opposite."""
+    """Make the term of a comparison, and tell whether it says the same or the opposite."""
     if figure not in FIGURES:
-        known = ", ".join(FIGURES)
-        raise ValueError(f"{_short(figure)}: no number of a map; there are {known}")
+        hint = meant(figure, FIGURES) or f"there are {', '.join(FIGURES)}"
+        raise ValueError(f"{_short(figure)}: no number of a map; {hint}")
     count = _number(text, "number")
     if sign in ("=", "!="):
         return f"number({FIGURES[figure]},{count})", sign == "="

@@ -1,1 +1,1 @@
-"""What every part stands on: errors, files, limits, progress, exit statuses."""
+"""What every other room uses: errors, files, limits, progress, exit statuses."""

@@ -1,6 +1,8 @@
-"""What callers of the public functions give as numbers, shares, seconds and answers to yes or no:
-checked, and as plain Python has it. Each check raises ValueError, one line that names the argument
-and says what it may be; ``collection`` raises TypeError."""
+"""Checks of what callers of the public functions give, which is converted to plain Python.
+
+Each check raises a ValueError, in one line that names the argument and says what it may be;
+``collection`` raises a TypeError.
+"""
 
 import math
 import operator
@@ -15,8 +17,7 @@ T = TypeVar("T")
 
 
 def integer(name: str, value: Any) -> int:
-    """A whole number of any type that has whole numbers, such as those of numpy, as an int. True
-    and False are none."""
+    """Convert a whole number of any type, such as those of numpy, to int; bool is refused."""
     if not isinstance(value, bool):
         try:
             return operator.index(value)
@@ -26,7 +27,7 @@ def integer(name: str, value: Any) -> int:
 
 
 def whole(name: str, value: Any, least: int, most: int = LARGEST) -> int:
-    """A whole number between bounds."""
+    """Check a whole number between bounds."""
     try:
         number = integer(name, value)
     except ValueError:
@@ -39,12 +40,12 @@ def whole(name: str, value: Any, least: int, most: int = LARGEST) -> int:
 
 
 def whole_if_given(name: str, value: Any, least: int, most: int = LARGEST) -> int | None:
-    """The same; None, where an argument was not given, stays None."""
+    """Check a whole number between bounds, or None if it was not given."""
     return None if value is None else whole(name, value, least, most)
 
 
 def seconds(name: str, value: Any) -> float | None:
-    """A number of seconds, 0 or more and finite; None, for no limit, stays None."""
+    """Check a number of seconds, 0 or more and finite, or None for no limit."""
     if value is None:
         return None
     number = _real(value)
@@ -56,7 +57,7 @@ def seconds(name: str, value: Any) -> float | None:
 
 
 def number_if_given(name: str, value: Any, least: float = -LARGEST) -> float | None:
-    """A finite number, not below the least one; None, where it was not given, stays None."""
+    """Check a finite number, which must not be below the least one, or None if it was not given."""
     if value is None:
         return None
     number = _real(value)
@@ -66,7 +67,7 @@ def number_if_given(name: str, value: Any, least: float = -LARGEST) -> float | N
 
 
 def share(name: str, value: Any) -> float:
-    """A share of something, from 0 to 1."""
+    """Check a share of something, from 0 to 1."""
     number = _real(value)
     if not 0 <= number <= 1:
         raise ValueError(f"{said(name, value)}: it must be a number from 0 to 1")
@@ -74,7 +75,7 @@ def share(name: str, value: Any) -> float:
 
 
 def percent(name: str, value: Any) -> float:
-    """A number of percent, 0 to 1000."""
+    """Check a number of percent, from 0 to 1000."""
     number = _real(value)
     if not 0 <= number <= 1000:
         raise ValueError(f"{said(name, value)}: it must be a number of percent, from 0 to 1000")
@@ -82,7 +83,7 @@ def percent(name: str, value: Any) -> float:
 
 
 def degrees(name: str, value: Any) -> float | None:
-    """An angle in degrees, 0 to 180; None, where it was not given, stays None."""
+    """Check an angle in degrees, from 0 to 180, or None if it was not given."""
     number = 0.0 if value is None else _real(value)
     if not 0 <= number <= 180:
         raise ValueError(f"{said(name, value)}: it must be a number of degrees, from 0 to 180")
@@ -90,8 +91,7 @@ def degrees(name: str, value: Any) -> float | None:
 
 
 def positive(name: str, value: Any) -> float | None:
-    """A number above 0, which is neither tiny nor without end; None, where it was not given, stays
-    None."""
+    """Check a number above 0, neither tiny nor infinite, or None if it was not given."""
     number = 1.0 if value is None else _real(value)
     if not 1e-9 <= number <= LARGEST:
         raise ValueError(f"{said(name, value)}: it must be a number from 1e-09 to {LARGEST}")
@@ -99,22 +99,25 @@ def positive(name: str, value: Any) -> float | None:
 
 
 def flag(name: str, value: Any) -> bool:
-    """True or False, and nothing else that Python takes for one of them."""
+    """Check that a value is True or False, and nothing else that Python takes for one of them."""
     if not isinstance(value, bool):
         raise ValueError(f"{said(name, value)}: it must be True or False")
     return value
 
 
 def collection(name: str, given: Iterable[T]) -> Iterable[T]:
-    """What was given as a collection. Raises TypeError if it is none, or is a text, whose letters
-    nobody means."""
+    """Check that a value is a collection.
+
+    Raises:
+        TypeError: It is none, or it is a text, where nobody means the single letters.
+    """
     if isinstance(given, str | bytes) or not isinstance(given, Iterable):
         raise TypeError(f"{name}: a collection is wanted, such as a list, not {shown(given)}")
     return given
 
 
 def _real(value: object) -> float:
-    """A number as a float; not a number (nan) if it is none."""
+    """Convert a number to a float; what is not a number becomes nan."""
     if isinstance(value, bool) or not isinstance(value, Real):
         return math.nan
     try:
@@ -124,10 +127,10 @@ def _real(value: object) -> float:
 
 
 def said(name: str, value: object) -> str:
-    """An argument and what was given for it, in one line."""
+    """Name an argument and the value that was given for it, in one line."""
     return f"{name}={shown(value)}"
 
 
 def shown(value: object) -> str:
-    """A value that was given, in one line that is not long."""
+    """Show a value that was given, in one short line."""
     return " ".join(reprlib.repr(value).split())

@@ -5,20 +5,20 @@ import sys
 
 
 class InputError(Exception):
-    """Bad input or usage; the message is one line that names file, step and fault."""
+    """Bad input or bad usage; the message is one line that names file, step and fault."""
 
 
 def of_file(path: object, error: OSError) -> InputError:
-    """What the system says of a file."""
+    """Make the error that says what the system says about a file."""
     return InputError(f"{path}: {(error.strerror or str(error)).lower()}")
 
 
 def printable(text: str) -> str:
-    """The text in one line, what a terminal would obey spelt out."""
+    """Spell the text in one line, with escapes in place of characters that control a terminal."""
     return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in text)
 
 
 def say(message: str) -> None:
-    """A message on stderr: one line, whatever names are in it; lost if it cannot be written."""
+    """Print a message of one line on stderr; it is lost if it cannot be written."""
     with contextlib.suppress(OSError):
         print(printable(message), file=sys.stderr, flush=True)

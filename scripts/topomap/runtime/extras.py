@@ -1,10 +1,11 @@
-"""Extras: what some commands need beyond the base of the installation."""
+"""Extras: what some commands need besides the base of the installation."""
 
 from importlib.util import find_spec
 
 from topomap.runtime.errors import InputError
 
 MODULES = {
+    "complete": ("shtab",),
     "draw": ("jinja2", "matplotlib", "numpy", "scipy"),
     "dask": ("distributed",),
     "floorplan": ("PIL", "numpy", "scipy", "skimage", "yaml"),
@@ -12,12 +13,16 @@ MODULES = {
 
 
 def lacking(extra: str) -> str | None:
-    """A module of an extra that is not installed, if there is one."""
+    """Find a module of an extra that is not installed, if there is one."""
     return next((module for module in MODULES[extra] if find_spec(module) is None), None)
 
 
 def need(extra: str, what: str) -> None:
-    """Raise InputError, one line that begins with ``what``, if an extra is not installed."""
+    """Check that an extra is installed.
+
+    Raises:
+        InputError: It is not; one line that begins with ``what``.
+    """
     if module := lacking(extra):
         raise InputError(
             f"{what}: {module} is not installed; it comes with the extra {extra}: "

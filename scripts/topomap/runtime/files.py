@@ -1,5 +1,4 @@
-"""Files: read whole, within a limit; written so that the old one or the whole new one is
-there, never a part."""
+"""Files: they are read whole, within a limit, and are never left half-written."""
 
 import contextlib
 import fcntl
@@ -20,12 +19,20 @@ TEXT = {"encoding": "utf-8", "errors": "backslashreplace"}
 
 
 def read_bytes(path: str | Path) -> bytes:
-    """The bytes of a file. Raises InputError where it cannot be read."""
+    """Read the bytes of a file.
+
+    Raises:
+        InputError: The file cannot be read.
+    """
     return bytes(_content(path, MOST_BYTES))
 
 
 def read_text(path: str | Path, most: int = MOST_BYTES) -> str:
-    """The text of a file of ``most`` bytes at most. Raises InputError where there is none."""
+    """Read the text of a file of at most ``most`` bytes.
+
+    Raises:
+        InputError: The file cannot be read, is too large, or is not text.
+    """
     try:
         return _content(path, most, b"\0").decode("utf-8-sig")
     except UnicodeDecodeError:
@@ -33,7 +40,7 @@ def read_text(path: str | Path, most: int = MOST_BYTES) -> str:
 
 
 def _content(path: str | Path, most: int, forbidden: bytes | None = None) -> bytearray:
-    """What is in a file, read until it is too much or no text."""
+    """Read a file until it is too large or turns out not to be text."""
     content = bytearray()
     try:
         with Path("/dev/stdin" if str(path) == "-" else path).open("rb") as file:
@@ -52,10 +59,14 @@ def _content(path: str | Path, most: int, forbidden: bytes | None = None) -> byt
 
 @contextlib.contextmanager
 def output(path: str | None, parents: bool = False, binary: bool = False) -> Iterator[IO[Any]]:
-    """A text to write: standard output without a path, else a temporary file beside
-    the named one that takes its place when all is written; ``parents`` makes its folder,
-    ``binary`` takes bytes.
-    Raises InputError where that cannot be."""
+    """Open what a command writes to: standard output if there is no path, otherwise a file.
+
+    A temporary file beside the named one is written, and takes its place when it is whole.
+    ``parents`` makes the folder of the file, and ``binary`` takes bytes.
+
+    Raises:
+        InputError: The file cannot be written.
+    """
     try:
         how: dict[str, Any] = {"mode": "wb"} if binary else {"mode": "w", **TEXT}
         if path is None:
@@ -94,8 +105,10 @@ def output(path: str | None, parents: bool = False, binary: bool = False) -> Ite
 
 
 def _temporary(folder: Path, how: dict[str, Any]) -> IO[Any]:
-    """A new file in a folder, locked while its writer lives. A writer that was killed
-    leaves one without a lock: these go."""
+    """Make a new file in a folder, which is locked while its writer lives.
+
+    A writer that was killed leaves a file without a lock; such files are removed.
+    """
     for left in folder.glob(f"{_TEMPORARY}*"):
         with contextlib.suppress(OSError), left.open() as old:
             fcntl.flock(old, fcntl.LOCK_EX | fcntl.LOCK_NB)
@@ -104,9 +117,9 @@ def _temporary(folder: Path, how: dict[str, Any]) -> IO[Any]:
         file: IO[Any] = tempfile.NamedTemporaryFile(  # noqa: SIM115
             dir=folder, prefix=_TEMPORARY, delete=False, **how
         )
-        with contextlib.suppress(OSError):  # no locks in this file system: nothing is cleaned
+        with contextlib.suppress(OSError):  # this file system has no locks: nothing is removed
             fcntl.flock(file, fcntl.LOCK_EX)
-        if os.fstat(file.fileno()).st_nlink:  # else another writer took it for a left one
+        if os.fstat(file.fileno()).st_nlink:  # otherwise another writer has removed it
             return file
         file.close()
 

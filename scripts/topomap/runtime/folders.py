@@ -1,5 +1,7 @@
-"""Where the rules and the instances are: in the package if it was installed, else in the
-checkout that this file is part of."""
+"""Where the encodings and the instances are.
+
+They are in the package if it was installed, otherwise in the checkout of this file.
+"""
 
 from pathlib import Path
 

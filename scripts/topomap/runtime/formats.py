@@ -1,5 +1,8 @@
-"""What all JSON that the commands write has in common: the number of its format comes first, and
-whether it is whole comes last. Each command's keys are in docs/formats.md."""
+"""What all JSON that the commands write has in common.
+
+The number of its format comes first, and whether the answer is whole comes last. docs/formats.md
+explains the keys of each command.
+"""
 
 import json
 from typing import Any
@@ -10,28 +13,33 @@ FORMAT = 1
 
 
 def headed(data: dict[str, Any]) -> dict[str, Any]:
-    """The data, the number of their format first."""
+    """Put the number of the format before the data."""
     return {"format": FORMAT, **data}
 
 
 def ended(fault: str | None) -> dict[str, Any]:
-    """What tells whether an answer is whole, and if not, why."""
+    """Tell whether an answer is whole, and if it is not, why."""
     return {"complete": fault is None, "fault": fault}
 
 
 def answer(data: dict[str, Any], fault: str | None = None) -> dict[str, Any]:
-    """A whole JSON object: the data between its format and its end."""
+    """Make a whole JSON object: the number of the format, the data, and whether it is whole."""
     return headed({**data, **ended(fault)})
 
 
 def line(data: dict[str, Any], fault: str | None = None) -> str:
-    """The same as a line of text."""
+    """Make a whole JSON object, as a line of text."""
     return json.dumps(answer(data, fault)) + "\n"
 
 
 def demand(where: object, data: Any) -> None:
-    """Demand that what was read has this format, or names no format, as a file that was written
-    by hand may. Raises InputError, one line that begins with ``where``."""
+    """Check that what was read has this format.
+
+    A file that was written by hand may name no format.
+
+    Raises:
+        InputError: It has another format; one line that begins with ``where``.
+    """
     if isinstance(data, dict) and "format" in data:
         said = data["format"]
         if type(said) is not int or said != FORMAT:

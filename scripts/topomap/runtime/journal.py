@@ -1,4 +1,4 @@
-"""Journals of long runs: what is done, in FILE.part beside the output FILE, to go on from."""
+"""Journals of long runs: FILE.part, beside the output FILE, tells what is done."""
 
 import fcntl
 import json
@@ -17,14 +17,17 @@ DONE = b"done"
 
 
 class Journal:
-    """A run in units: values are written, and a unit is done when it is committed. Each
-    line ends with a checksum of all that the file holds so far.
+    """A journal of a run that consists of units.
 
-    ``run`` says what is computed. With ``resume`` the journal of an earlier, equal run is
-    gone on with after its last unit that was done; with ``cut_too`` the values of the unit
-    that was cut are kept as well. Without an output file, or if that is no
-    regular one, nothing is kept. Raises InputError where the file cannot be had, another
-    process has it, or it is of another run.
+    Values are written, and a unit is done when it is committed. Each line ends with a checksum of
+    all that the file holds so far.
+
+    ``run`` describes what is computed. ``resume`` goes on with the journal of an earlier, equal
+    run, after its last unit that was done; with ``cut_too`` the values of the unit that was cut
+    short are kept as well. Without an output file, or if it is not a regular file, nothing is kept.
+
+    Raises:
+        InputError: The file cannot be opened, another process uses it, or it is of another run.
     """
 
     def __init__(
@@ -37,7 +40,7 @@ class Journal:
         self.path: Path | None = None
         self.complete = self._stopped = False
         self._cut_too, self._output = cut_too, output
-        self._end = self._units = self._sum = 0  # of what counts
+        self._end = self._units = self._sum = 0  # of the valid part
         self._reader: BinaryIO | None = None
         head = json.dumps({"topomap": VERSION, **(run or {})}) + "\n"
         if output is None or (Path(output).exists() and not Path(output).is_file()):
@@ -52,11 +55,13 @@ class Journal:
             if self.path.stat().st_size:
                 self._file.seek(0)
                 if self._file.read(len(HEAD)) != HEAD[: self.path.stat().st_size]:
-                    raise InputError(f"{self.path}: no journal of this program; it is in the way")
+                    raise InputError(
+                        f"{self.path}: it is not a journal of this program, and is in the way"
+                    )
                 if resume:
                     self._read(head.encode())
                 else:
-                    say(f"{output}: begun anew; with --resume it would have gone on")
+                    say(f"{output}: started anew; with --resume the run would have gone on")
             self._file.truncate(self._end)
             if not self._end:
                 self._file.write(head.encode())
@@ -76,13 +81,15 @@ class Journal:
             raise InputError(f"{output}: not the name of a file") from None
 
     def _read(self, head: bytes) -> None:
-        """Find the end of what counts."""
+        """Find the end of what is valid."""
         self._file.seek(0)
         first = self._file.readline()
         if not first.endswith(b"\n"):
             return
         if first != head:
-            raise InputError(f"{self.path}: of another run; without --resume it is begun anew")
+            raise InputError(
+                f"{self.path}: it is of another run; without --resume this run starts anew"
+            )
         self._end = self._file.tell()
         self._sum = total = zlib.crc32(first)
         for line in self._file:
@@ -99,7 +106,10 @@ class Journal:
 
     @staticmethod
     def _added(text: bytes, total: int) -> int:
-        """The checksum with one more text; its end counts, or two texts could become one."""
+        """Add a text to the checksum.
+
+        The end of the text is included, because two texts could otherwise be taken for one.
+        """
         return zlib.crc32(text + b"\n", total)
 
     @staticmethod
@@ -108,43 +118,46 @@ class Journal:
 
     @staticmethod
     def _text(line: bytes) -> tuple[bytes, bool]:
-        """What a line says, and whether it is the end of a unit."""
+        """Read what a line says, and whether it ends a unit."""
         text = line.rpartition(b" ")[0]
         return text, text == DONE
 
     @property
     def kept(self) -> bool:
-        """Whether anything is noted."""
+        """Whether anything is written down."""
         return self.path is not None
 
     def recorded(self, units: int) -> Iterator[Any]:
-        """The values of the next so many of the units that are done, and a None after each
-        unit; then those of the unit that was cut, if there was one."""
+        """Give the recorded values of the next units.
+
+        A None follows the values of each unit that is done. The values of the unit that was cut
+        short, if there was one, come last.
+        """
         while units and self._reader and self._reader.tell() < self._end and not self._stopped:
             text, done = self._text(self._reader.readline())
             units -= done
             yield None if done else json.loads(text)
 
     def known(self, units: int) -> list[Any]:
-        """The same of units of one value each."""
+        """Give the recorded values of the next units that have one value each."""
         return [value for value in self.recorded(units) if value is not None]
 
     def keep(self, value: Any) -> None:
-        """Note a unit of one value, that is done."""
+        """Write down a unit of one value, which is done."""
         self.add(value)
         self.commit()
 
     def add(self, value: Any) -> None:
-        """Note a value of the unit that is being worked on."""
+        """Write down a value of the unit that is being worked on."""
         self._write(json.dumps(value).encode())
 
     def commit(self) -> None:
-        """Note that the unit is done."""
+        """Write down that the unit is done."""
         self._write(DONE, flush=True)
         self._units += 1
 
     def stop(self) -> None:
-        """Note nothing more: the next unit is not the one that would be next in a whole run."""
+        """Write down nothing more, because the next unit is not the next one of a whole run."""
         self._stopped = True
 
     def _write(self, text: bytes, flush: bool = False) -> None:
@@ -162,8 +175,7 @@ class Journal:
         return self
 
     def __exit__(self, kind: type[BaseException] | None, *_: object) -> None:
-        """Let go of the file; it goes when the run was complete and written down, or has done
-        nothing."""
+        """Close the file, and remove it if the run is complete or has done nothing."""
         if self._reader is None or self.path is None:
             return
         if not self._units or (self.complete and kind is None):

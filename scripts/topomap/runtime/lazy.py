@@ -6,10 +6,13 @@ from typing import Any
 
 
 def loader(package: str, where: Mapping[str, str]) -> Callable[[str], Any]:
-    """The ``__getattr__`` of a package: ``where`` tells of each name the module, in topomap, that
-    has it."""
+    """Make the ``__getattr__`` of a package.
+
+    ``where`` tells for each name which module of topomap has it.
+    """
 
     def load(name: str) -> Any:
+        """Load the module of a name, and give what it calls so."""
         if name not in where:
             raise AttributeError(f"module {package!r} has no attribute {name!r}")
         value = getattr(import_module(f"topomap.{where[name]}"), name)

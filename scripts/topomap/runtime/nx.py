@@ -1,4 +1,4 @@
-"""networkx, loaded where it is first used: to load it takes as long as all else."""
+"""networkx, which is loaded where it is first used, because that takes as long as all else."""
 
 from typing import TYPE_CHECKING, Any
 

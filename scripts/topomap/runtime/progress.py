@@ -1,4 +1,4 @@
-"""A progress line on stderr, for what takes longer than a moment."""
+"""A progress line on stderr, for work that takes longer than a moment."""
 
 import contextlib
 import sys
@@ -6,14 +6,16 @@ import threading
 import time
 from typing import Any
 
-SOON, OFTEN = 2.0, 0.2  # seconds until it is shown, and from then on, on a terminal
-SELDOM = 10.0  # the same elsewhere, where each line stays
+SOON, OFTEN = 2.0, 0.2  # seconds until the first line, and between later ones, in a terminal
+SELDOM = 10.0  # seconds between lines elsewhere, where each line stays
 
 
 class Progress:
-    """How many maps were found, and what is being done. tqdm, which draws the line, is loaded
-    when the line is first shown: most runs end before that, and it takes longer to load than
-    they take."""
+    """How many maps were found, and what is being done.
+
+    tqdm draws the line. It is loaded when the line is first shown: most runs end before that, and
+    loading it takes longer than they do.
+    """
 
     def __init__(self, quiet: bool = False):
         self._quiet = quiet
@@ -27,14 +29,14 @@ class Progress:
         self._title, self._phase = text, ""
 
     def phase(self, text: str) -> None:
-        """Say which part of that is being done; with an empty text, that none is."""
+        """Say which part of the work is being done; an empty text means that none is named."""
         self._phase = text
 
     def show(self, found: int) -> None:
-        """Show how many maps were found, if it is time for that."""
+        """Show how many maps were found, if it is time to show it again."""
         if self._quiet or (self._bar is None and time.monotonic() < self._first):
             return
-        with contextlib.suppress(OSError):  # stderr cannot be written
+        with contextlib.suppress(OSError):  # stderr may be closed
             if self._bar is None:
                 self._bar = _bar(self._interval)
             words = ": ".join(filter(None, [self._title, self._phase]))
@@ -42,7 +44,7 @@ class Progress:
             self._bar.update(found - self._bar.n)
 
     def close(self) -> None:
-        """Take the line away."""
+        """Remove the line."""
         if self._bar is not None:
             with contextlib.suppress(OSError):
                 self._bar.close()
@@ -51,7 +53,7 @@ class Progress:
 def _bar(interval: float) -> Any:
     from tqdm import tqdm
 
-    tqdm.monitor_interval = 0  # a thread that may never begin
-    # tqdm's own lock is made for processes, and may be left behind by one that is killed.
+    tqdm.monitor_interval = 0  # its thread may never begin
+    # tqdm's own lock is shared by processes, and a process that is killed may keep it for ever.
     tqdm.set_lock(threading.RLock())
     return tqdm(unit=" maps", mininterval=interval, miniters=0, leave=False)

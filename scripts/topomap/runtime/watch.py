@@ -1,4 +1,4 @@
-"""What may end a search before it is done: a time limit, a signal, want of memory."""
+"""What may end a search before it is complete: a time limit, a signal, or lack of memory."""
 
 import contextlib
 import functools
@@ -20,20 +20,22 @@ Late = Callable[[], bool]  # whether the time is over
 
 
 def never() -> bool:
-    """No time limit."""
+    """The time limit that never ends."""
     return False
 
 
 class Stopped(Exception):
-    """The search ended before all was found; the message says why."""
+    """The search ended before everything was found; the message says why."""
 
 
-STOPS = Stopped, MemoryError  # what leaves a partial answer
+STOPS = Stopped, MemoryError  # the exceptions that leave a partial answer
 
 
 class Attempt:
-    """A context that may end before its work is done; ``fault`` then says why, and is None
-    otherwise. So what was found until then can be told."""
+    """A context for work that may be cut short, after which ``fault`` says why, or is None.
+
+    So what was found until then can be reported.
+    """
 
     fault: str | None = None
 
@@ -48,8 +50,10 @@ class Attempt:
 
 
 class _Spared(Generic[T]):
-    """An iterator that lets go of what it holds when memory runs out, and then says so: even to
-    note that takes some memory."""
+    """An iterator that frees what it holds when memory runs out, and then reports that.
+
+    The order matters, because even reporting it takes some memory.
+    """
 
     def __init__(self, items: Iterator[T]):
         self._items: Iterator[T] = items
@@ -62,35 +66,39 @@ class _Spared(Generic[T]):
             return next(self._items)
         except MemoryError:
             pass
-        # Only here has the error gone, and with it all that the generator held.
+        # Only here has the error been freed, and with it all that the generator held.
         self._items = iter(())
         raise Stopped(MEMORY)
 
 
 def spared(function: Callable[P, Iterator[T]]) -> Callable[P, Iterator[T]]:
-    """Of a generator function that may hold much: when memory runs out, it lets go of it and
-    raises Stopped."""
+    """Decorate a generator function that may hold much memory.
+
+    When memory runs out, it frees what it holds and raises Stopped.
+    """
 
     @functools.wraps(function)
     def made(*args: P.args, **options: P.kwargs) -> Iterator[T]:
+        """Make the iterator of a call."""
         return _Spared(function(*args, **options))
 
     return made
 
 
 class Deadline:
-    """A time limit: ``at`` is its end by the monotonic clock, or None if there is none."""
+    """A time limit: ``at`` is its end on the monotonic clock, or None if there is none."""
 
     def __init__(self, seconds: float | None = None):
         self.at = None if seconds is None else time.monotonic() + seconds
 
     @property
     def passed(self) -> bool:
+        """Whether the time is over."""
         return self.at is not None and time.monotonic() > self.at
 
     @contextlib.contextmanager
     def waiting(self) -> Iterator[None]:
-        """Let the time limit wait until something else is done."""
+        """Stop the clock of the time limit until something else is done."""
         begun = time.monotonic()
         at, self.at = self.at, None
         try:
@@ -100,7 +108,7 @@ class Deadline:
 
     @contextlib.contextmanager
     def earlier(self, seconds: float) -> Iterator[None]:
-        """A part of the work may take this long at most."""
+        """Limit a part of the work to a number of seconds."""
         at, end = self.at, time.monotonic() + seconds
         self.at = end if at is None else min(at, end)
         try:
@@ -110,7 +118,7 @@ class Deadline:
 
     @contextlib.contextmanager
     def sooner(self, share: float) -> Iterator[None]:
-        """A part of the work may take such a share of the time that is left."""
+        """Limit a part of the work to a share of the time that is left."""
         at, now = self.at, time.monotonic()
         self.at = None if at is None else now + share * max(0.0, at - now)
         try:
@@ -120,12 +128,13 @@ class Deadline:
 
 
 class Signals:
-    """As a context it takes SIGINT and SIGTERM, and notes that one came."""
+    """A context that catches SIGINT and SIGTERM, and notes that one came."""
 
     came = False
 
     def __enter__(self) -> "Signals":
         def note(*_: object) -> None:
+            """Note the signal."""
             self.came = True
 
         heeded = [number for number in SIGNALS if signal.getsignal(number) != signal.SIG_IGN]
@@ -138,12 +147,14 @@ class Signals:
 
 
 class Watch:
-    """What the search and clingo look at while they work: the deadline, and the signals and the
-    progress line of the command that began the work, if one did. ``found`` counts the maps; ``by``
-    is the way that gives them, and ``least`` what each of them costs at least, as far as proved.
+    """What the search and clingo look at while they work.
 
-    Without signals and a progress line it changes nothing in the process, so it can be used in any
-    thread. Another thread ends the work by setting ``ended`` to the reason.
+    It has the deadline, and the signals and the progress line of the command that began the work,
+    if a command did. ``found`` counts the maps. ``by`` is the way that finds them, and ``least`` is
+    a proved lower bound on their cost.
+
+    Without signals and a progress line it changes nothing in the process, so that it can be used in
+    any thread. Another thread ends the work by setting ``ended`` to the reason.
     """
 
     def __init__(
@@ -162,14 +173,22 @@ class Watch:
         self.title, self.phase = self._progress.title, self._progress.phase
 
     def tick(self) -> None:
-        """Show progress; raises Stopped past the time limit, after a signal, and when another
-        thread has ended the search."""
+        """Show progress.
+
+        Raises:
+            Stopped: The time limit has passed, a signal came, or another thread has ended the work.
+        """
         if self.late():
             raise Stopped("timeout")
 
     def late(self) -> bool:
-        """Whether the time limit has passed, for work that then goes a shorter way. It shows
-        progress; raises Stopped after a signal, and when another thread has ended the work."""
+        """Tell whether the time limit has passed, for work that then takes a shorter way.
+
+        It shows progress, too.
+
+        Raises:
+            Stopped: A signal came, or another thread has ended the work.
+        """
         self._progress.show(self.found)
         if self._signals and self._signals.came:
             raise Stopped(INTERRUPT)
@@ -180,8 +199,11 @@ class Watch:
 
 @contextlib.contextmanager
 def heeding(timeout: float | None = None, quiet: bool = False) -> Iterator[Watch]:
-    """The watch of a command. It has a time limit in seconds, shows a progress line on stderr when
-    the work takes long, and ends the work with Stopped after SIGINT or SIGTERM."""
+    """Make the watch of a command.
+
+    It has a time limit in seconds, shows a progress line on stderr when the work takes long, and
+    ends the work with Stopped after SIGINT or SIGTERM.
+    """
     progress = Progress(quiet)
     with Signals() as signals:
         try:

@@ -1,9 +1,10 @@
 """Equation (1) of the paper, node by node: how much planarity narrows the search.
 
-Predicted: bp/b = (pi / mean p) / (m + 1), with pi pending gateways on the face of the one
-that the step leaves by, p on all f faces, mean p = p / f, and m matches so far.
-Measured: every child is built, and its genus counted anew. Children are counted before the
-path axiom, the bound and the marker; one of them is always the map with a new place.
+The equation predicts bp/b = (pi / mean p) / (m + 1). Here pi is the number of pending gateways on
+the face of the gateway by which the step leaves, p that on all f faces, mean p = p / f, and m the
+number of matches so far. This is compared with what is measured: every child is built, and its
+genus counted anew. Children are counted before the path axiom, the bound and the marker are
+applied; one of them is always the map with a new place.
 """
 
 from collections.abc import Callable, Iterator
@@ -19,8 +20,12 @@ from topomap.search.traversal import breadth_first
 
 @dataclass(frozen=True)
 class Branches:
-    """A node's children ``b``, planar ones ``bp``; pending gateways on the face ``pi``, and
-    in all ``p``; and the ratio bp/b by equation (1), None if p is 0."""
+    """The branches of a node.
+
+    It has the numbers of children ``b`` and of planar ones ``bp``, the numbers of pending gateways
+    on the face ``pi`` and in all ``p``, and the ratio bp/b by equation (1), which is None if p is
+    0.
+    """
 
     b: int
     bp: int
@@ -30,13 +35,16 @@ class Branches:
 
     @property
     def measured(self) -> Fraction:
+        """The ratio bp/b as it is."""
         return Fraction(self.bp, self.b)
 
     @property
     def difference(self) -> Fraction | None:
+        """The measured ratio minus the predicted one."""
         return None if self.predicted is None else self.measured - self.predicted
 
     def document(self) -> dict[str, Any]:
+        """The branches as JSON."""
         numbers = {"measured": self.measured, "predicted": self.predicted}
         return {
             **{key: getattr(self, key) for key in ("b", "bp", "pi", "p")},
@@ -49,9 +57,9 @@ class Branches:
 class BranchingNode:
     """A node whose next step, ``step``, leaves by a pending gateway.
 
-    ``worst``: as if every pending gateway fitted what is seen, as the paper assumes.
-    ``seen``: those that do fit (its footnote 2: pi and p are of these too).
-    ``start_fits``: whether the gateway left by is one of them, as in the worst case it is.
+    ``worst`` counts as if every pending gateway fitted the view, as the paper assumes. ``seen``
+    counts only those that fit (its footnote 2: pi and p count only these, too). ``start_fits``
+    tells whether the gateway by which the step leaves is one of them, as it is in the worst case.
     """
 
     at: tuple[tuple[int, int], ...]
@@ -64,15 +72,16 @@ class BranchingNode:
 
     @property
     def faces_hold(self) -> bool:
-        """f = m + 1."""
+        """Whether f = m + 1."""
         return self.faces == self.matches + 1
 
     @property
     def gap(self) -> Fraction:
-        """The ratio under the views that are seen, less that of equation (1) as it stands."""
+        """The ratio for the views that are seen, minus that of equation (1) as it stands."""
         return self.seen.measured - (self.worst.predicted or 0)
 
     def document(self) -> dict[str, Any]:
+        """The node as JSON."""
         return {
             "step": self.step,
             "at": steps_json(self.at),
@@ -87,7 +96,7 @@ class BranchingNode:
 
 @spared
 def branching(node: Hypothesis, watch: Watch) -> Iterator[BranchingNode]:
-    """The branching nodes of a planar tree, step by step."""
+    """Find the branching nodes of a planar tree, step by step."""
     for _ in breadth_first(node, watch):
         last = node.steps == node.experience.steps
         if not last and not node.rests and node.out() not in node.links:
@@ -102,6 +111,7 @@ def _branching(node: Hypothesis) -> BranchingNode:
     planar = {new} | {gateway for gateway in pending if gateway != out and _planar(node, gateway)}
 
     def branches(fit: set[int]) -> Branches:
+        """Count the branches to the gateways that fit."""
         children = {new} | fit - {out}
         pi, p = len(fit & set(node.face(out))), len(fit)
         by_equation = Fraction(pi, 1) / Fraction(p, faces) / (node.matches + 1) if p else None
@@ -120,24 +130,24 @@ def _branching(node: Hypothesis) -> BranchingNode:
 
 
 def _planar(node: Hypothesis, arrival: int) -> bool:
-    """Whether the map stays planar when the next step arrives there."""
+    """Tell whether the map stays planar when the next step arrives there."""
     return node.experience.map_of((*node.dstates, divmod(arrival, node.slots))).genus() == 0
 
 
 class Summary:
-    """Totals over branching nodes, by step and in all, taken in as they come.
+    """Totals over branching nodes, by step and in all.
 
-    ``worst_equal``: nodes at which the worst case is as predicted; ``seen_equal``: the same
-    under the views that are seen, by footnote 2, of those where it predicts anything
-    (``seen_predicted``); ``largest_difference`` there, and ``largest_gap`` to equation (1)
-    as it stands.
+    ``worst_equal`` is the number of nodes at which the worst case is as predicted. ``seen_equal``
+    is that for the views that are seen, by footnote 2, of the nodes for which it predicts anything
+    (``seen_predicted``). ``largest_difference`` is the largest difference there, and
+    ``largest_gap`` the largest one to equation (1) as it stands.
     """
 
     def __init__(self) -> None:
         self.totals: dict[str, Any] = {**dict.fromkeys(FIGURES, 0), "steps": []}
 
     def add(self, node: BranchingNode) -> None:
-        """Take in a node, of the same step as the last one or a later one."""
+        """Add a node, of the same step as the last one or of a later one."""
         steps = self.totals["steps"]
         if not steps or steps[-1]["step"] != node.step:
             steps.append({"step": node.step, **dict.fromkeys(FIGURES, 0)})
@@ -147,7 +157,7 @@ class Summary:
 
     @property
     def holds(self) -> bool:
-        """Whether f = m + 1, and equation (1) in the worst case, at every node."""
+        """Whether f = m + 1, and equation (1) in the worst case, hold at every node."""
         return bool(
             self.totals["nodes"] == self.totals["f_is_m_plus_1"] == self.totals["worst_equal"]
         )
@@ -173,7 +183,7 @@ MAXIMA = "largest_difference", "largest_gap"
 
 
 def totals_text(totals: dict[str, Any]) -> str:
-    """The totals of a summary, to read: by step, and of all."""
+    """Write the totals of a summary to read, by step and in all."""
     head = "step", "nodes", "m", "worst b", "bp", "bp/b", "seen b", "bp", "bp/b", "start fits"
     lines = [" ".join(word.rjust(9) for word in head)]
     for part in [*totals["steps"], totals]:

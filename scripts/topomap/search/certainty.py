@@ -1,9 +1,9 @@
 """What holds in all hypotheses of an experience that goes on, kept from step to step.
 
-Two visits are certainly of one place if they are so in each hypothesis: so visits fall into
-classes, by the tuple of the places where the hypotheses have them. A step adds its visit to a
-class. Only where hypotheses have died, or have more than one child, are classes made anew, and
-only of the visits after the last one that all hypotheses have in common.
+Two visits are certainly of one place if they are of one place in each hypothesis. So visits are
+divided into classes, by the tuple of the places that the hypotheses give them. A step adds its
+visit to a class. Classes are made anew only if hypotheses have died or have more than one child,
+and only for the visits after the last one that all hypotheses have in common.
 """
 
 import heapq
@@ -17,15 +17,17 @@ from typing import Any
 
 from topomap.search.living import Living, Told, Visit
 
-Same = tuple[int, int]  # two steps: the agent was at one place after both
-Linked = tuple[int, int, int, int]  # T S U R: gateways, seen from where it stood after T and U
-Part = tuple[list[int], int]  # the first so many of a list of visits, in ascending order
+Same = tuple[int, int]  # two steps after which the agent was at one place
+Linked = tuple[int, int, int, int]  # T S U R: two gateways, as slots after T and U
+Part = tuple[list[int], int]  # visits in ascending order, and how many of the first ones count
 
 
 class Certain:
-    """What holds in all hypotheses, said of steps: ``same``, pairs of steps after which the agent
-    was at one place; ``new``, steps that came to a place for the first time; ``linked``, gateways
-    that are joined."""
+    """What holds in all hypotheses, told of steps.
+
+    ``same`` has pairs of steps after which the agent was at one place, ``new`` steps that came to a
+    place for the first time, and ``linked`` gateways that are joined.
+    """
 
     def __init__(
         self, same: Iterable[Same] = (), new: Iterable[int] = (), linked: Iterable[Linked] = ()
@@ -34,14 +36,17 @@ class Certain:
 
     @property
     def same(self) -> frozenset[Same]:
+        """Pairs of steps after which the agent was at one place."""
         return self._sets[0]
 
     @property
     def new(self) -> frozenset[int]:
+        """Steps that came to a place for the first time."""
         return self._sets[1]
 
     @property
     def linked(self) -> frozenset[Linked]:
+        """Gateways that are joined."""
         return self._sets[2]
 
     def since(self, before: "Certain") -> "Certain":
@@ -49,7 +54,7 @@ class Certain:
         return Certain(self.same - before.same, self.new - before.new, self.linked - before.linked)
 
     def pairs(self, most: int) -> tuple[list[Same], int]:
-        """The first pairs of ``same``, at most so many, and how many there are."""
+        """The first pairs of ``same``, at most so many, and their number in all."""
         return sorted(self.same)[:most], len(self.same)
 
     def __eq__(self, other: object) -> bool:
@@ -66,8 +71,12 @@ class Certain:
 
 @dataclass(frozen=True)
 class Change:
-    """What a step made certain: visits of ``joined`` are of one place, where they are of different
-    parts of one group; all of a group of one part. ``gone`` is what is said of other steps now."""
+    """What a step made certain.
+
+    Two visits of ``joined`` are now of one place if they are of different parts of one group; if a
+    group has one part only, all its visits are of one place. ``gone`` is what is now told of other
+    steps.
+    """
 
     joined: tuple[tuple[Part, ...], ...] = ()
     new: tuple[int, ...] = ()
@@ -75,7 +84,7 @@ class Change:
     gone: tuple[Linked, ...] = ()
 
     def number(self) -> int:
-        """How many pairs are joined."""
+        """The number of pairs that are joined."""
         found = 0
         for parts in self.joined:
             sizes = [size for _, size in parts]
@@ -86,7 +95,7 @@ class Change:
         return found
 
     def pairs(self) -> Iterator[Iterator[Same]]:
-        """The pairs of each group, in order."""
+        """The pairs of each group in order."""
         return map(_pairs, self.joined)
 
 
@@ -96,7 +105,8 @@ def _pairs(parts: Sequence[Part]) -> Iterator[Same]:
         yield from combinations(visits[:size], 2)
         return
     (visits, size), *rest = parts
-    if len(rest) == 1 and rest[0][1] == 1 and visits[size - 1] < rest[0][0][0]:  # most are so
+    # This is the usual case.
+    if len(rest) == 1 and rest[0][1] == 1 and visits[size - 1] < rest[0][0][0]:
         last = rest[0][0][0]
         for visit in islice(visits, size):
             yield visit, last
@@ -116,8 +126,10 @@ def _pairs(parts: Sequence[Part]) -> Iterator[Same]:
 
 
 class Changes(Certain):
-    """The same by steps: what is certain after a step, or what became certain ``since`` an earlier
-    one. Sets are made when they are asked for, as they grow with the square of the steps."""
+    """What is certain after a step, or what became certain ``since`` an earlier one, by steps.
+
+    Sets are made when they are asked for, because they grow with the square of the number of steps.
+    """
 
     def __init__(self, origin: object, changes: Sequence[Change], first: int, step: int):
         self._origin, self._changes, self._first, self.step = origin, changes, first, step
@@ -127,16 +139,19 @@ class Changes(Certain):
 
     @cached_property
     def same(self) -> frozenset[Same]:
+        """Pairs of steps after which the agent was at one place."""
         return frozenset(
             chain.from_iterable(chain.from_iterable(change.pairs() for change in self._all()))
         )
 
     @cached_property
     def new(self) -> frozenset[int]:
+        """Steps that came to a place for the first time."""
         return frozenset(step for change in self._all() for step in change.new)
 
     @cached_property
     def linked(self) -> frozenset[Linked]:
+        """Gateways that are joined."""
         found: set[Linked] = set()
         for change in self._all():
             found.difference_update(change.gone)
@@ -144,6 +159,7 @@ class Changes(Certain):
         return frozenset(found)
 
     def since(self, before: Certain) -> Certain:
+        """What was not certain before."""
         if type(before) is Certain and not (before.same or before.new or before.linked):
             return self
         if isinstance(before, Changes) and before._origin is self._origin:
@@ -151,6 +167,7 @@ class Changes(Certain):
         return super().since(before)
 
     def pairs(self, most: int) -> tuple[list[Same], int]:
+        """The first pairs of ``same``, at most so many, and their number in all."""
         each = [pairs for change in self._all() for pairs in change.pairs()]
         number = sum(change.number() for change in self._all())
         return [*islice(heapq.merge(*each), most)], number
@@ -161,30 +178,33 @@ class Certainty:
 
     def __init__(self, told: Told):
         self._told = told
-        self.origin = object()  # of one origin are those that say the same of each step
+        self.origin = object()  # objects of one origin agree about each step
         self._changes: list[Change] = []
         self._clear()
 
     def _clear(self) -> None:
-        # Keys are places, where all hypotheses agree, or else what differs.
+        # Keys are places if all hypotheses agree, and otherwise what differs.
         self._together: dict[Any, list[int]] = {}
-        self._turned: dict[Any, tuple[int, int]] = {}  # by the way of standing, too: the first one
-        self._keys: list[tuple[Any, Any]] = []  # of each visit
-        # Of each visit, one of the same place before it, and how the agent stood at that.
+        # The first visit, by the gateway of the agent, too.
+        self._turned: dict[Any, tuple[int, int]] = {}
+        self._keys: list[tuple[Any, Any]] = []  # for each visit
+        # For each visit, an earlier one of the same place, and the gateway of the agent there.
         self._first: list[tuple[int, int] | None] = []
-        self._fact: list[Linked | None] = []  # of each step
+        self._fact: list[Linked | None] = []  # for each step
         self._facts: Counter[Linked] = Counter()
         self._new: list[bool] = []
-        self._plain: list[bool] = []  # whether the hypotheses after a step come of one each
-        self._agreed = -1  # up to this step all hypotheses are one
+        self._plain: list[bool] = []  # whether each hypothesis before a step has one child
+        self._agreed = -1  # up to this step all hypotheses are equal
 
     def after(self, step: int) -> Certain:
-        """What is certain after this step, which is the last one."""
+        """What is certain after this step, which must be the last one."""
         return Changes(self.origin, self._changes, 0, step)
 
     def step(self, level: Sequence[Living], plain: bool) -> None:
-        """Go a step on, to these hypotheses; ``plain`` tells whether each of those before has one
-        child."""
+        """Go a step on, to these hypotheses.
+
+        ``plain`` tells whether each hypothesis before the step has one child.
+        """
         step = len(self._keys)
         if step and plain:
             at = [one.visit.gateway for one in level]
@@ -205,7 +225,7 @@ class Certainty:
             self._again(level, step)
 
     def begin(self, level: Sequence[Living], step: int) -> None:
-        """Begin anew, after this step, where the hypotheses are these."""
+        """Begin anew after this step, with these hypotheses."""
         self._clear()
         self.origin = object()
         self._changes = [Change()] * step
@@ -219,7 +239,7 @@ class Certainty:
         )
 
     def undo(self, level: Sequence[Living], last: int) -> None:
-        """Take steps back, so that this one is the last; the hypotheses are these then."""
+        """Take steps back until this one is the last, with these hypotheses."""
         begun = next((n for n, change in enumerate(self._changes) if change.new), 0)
         if last < begun:
             self.begin(level, last)
@@ -254,7 +274,7 @@ class Certainty:
         del self._plain[step:]
 
     def _again(self, level: Sequence[Living], step: int) -> None:
-        """Go a step on, where hypotheses have died, or have several children."""
+        """Go a step on when hypotheses have died or have several children."""
         since = self._agreed + 1
         before = {visit: self._keys[visit][0] for visit in range(since, step)}
         known = {visit for visit in range(since, step) if self._new[visit]}
@@ -288,14 +308,17 @@ class Certainty:
         self._agreed = _agreed(level)
 
     def _join(self, level: Sequence[Living], step: int) -> None:
-        """Add the visits that are missing, up to this step."""
+        """Add the missing visits up to this step."""
         since = len(self._keys)
         ways = [one.visit.gateways(since) for one in level]
         for number, at in enumerate(zip(*ways, strict=True), since):
             self._add(number, at)
 
     def _add(self, step: int, at: Sequence[int]) -> tuple[Part, ...] | None:
-        """Add a visit, which is at these gateways; the parts of its class, if it has other ones."""
+        """Add a visit, which is at these gateways, and find the parts of its class.
+
+        There are none if the visit is the only one of its class.
+        """
         told = self._told
         slots, tolerance = told.slots, told.tolerance
         here = at[0] // slots
@@ -329,8 +352,10 @@ class Certainty:
         return joined
 
     def _linked(self, step: int) -> Linked | None:
-        """The link of a travel, if it is certain that one of its ends was seen before: said of the
-        first visits there."""
+        """The link of a travel, if one of its ends was certainly seen before.
+
+        It is told of the first visits there.
+        """
         turn = self._told.steps[step].turn
         if turn is None:
             return None
@@ -343,7 +368,7 @@ class Certainty:
 
 
 def _agreed(level: Sequence[Living]) -> int:
-    """The last step up to which hypotheses are one."""
+    """The last step up to which all hypotheses are equal."""
     visits: set[Visit] = {one.visit for one in level}
     while len(visits) > 1:
         visits = {visit.before for visit in visits}

@@ -1,4 +1,4 @@
-"""Depth-first search for the maps of a query: it looks ahead, and tells how large its tree is."""
+"""Depth-first search for the maps of a query, which looks ahead and estimates its tree."""
 
 import heapq
 from collections.abc import Callable, Collection, Iterator, Sequence
@@ -11,23 +11,26 @@ from topomap.runtime.watch import Stopped, Watch, spared
 from topomap.search.hypothesis import OFTEN, Hypothesis
 from topomap.search.lookahead import LookAhead
 
-# After GREEDY_AFTER nodes, a search that minimises visits at most GREEDY nodes best first.
+# After GREEDY_AFTER nodes, a search that minimises visits at most GREEDY nodes best-first.
 GREEDY_AFTER, GREEDY = 4_000, 10_000
-# While it has found no map even so, it looks for one of few places (``_deepen``), and visits up to
-# DEEPEN nodes for each one of its own; first then, and again whenever its nodes have doubled. Where
-# more than MANY_PAIRS pairs of visits can be of one place, and any number of places is allowed, the
-# tree is too large to be searched: this is then done from the beginning on, with DEEPEN_LONG nodes.
+# If it has still found no map, it looks for one with few places (``_deepen``), and visits up to
+# DEEPEN nodes for each node of its own; this is repeated whenever its nodes have doubled. If more
+# than MANY_PAIRS pairs of visits can be of one place, and any number of places is allowed, the tree
+# is too large to be searched: then this is done from the beginning, with DEEPEN_LONG nodes.
 DEEPEN, DEEPEN_LONG, MANY_PAIRS = 4, 500, 5_000
 Cost = tuple[int, ...]
 
 
 class TooLarge(Exception):
-    """The search was ended because of how large its tree is."""
+    """The search was ended because its tree is too large."""
 
 
 class Unforeseen(Hypothesis):
-    """A hypothesis of which nothing is foretold: of an experience with steps that are no travel or
-    with bearings that are not exact, or without the path axiom."""
+    """A hypothesis without any look ahead.
+
+    It is used for experiences with steps that are not a travel, or with bearings that are not
+    exact, and without the path axiom.
+    """
 
     def __init__(self, experience: Experience, query: Query):
         planar = bool(query.parts & {"planar", "euler"})
@@ -36,7 +39,7 @@ class Unforeseen(Hypothesis):
         super().__init__(experience, planar, query.places, perpendicular, path_axiom)
 
     def least(self) -> tuple[int, int]:
-        """How many paths and places each map below this node has at least, as far as is known."""
+        """Proved lower bounds on the paths and places of each map below this node."""
         left = sum(turn is not None for turn in self.experience.turns[self.steps :])
         return max(1, len(self.paths) - left), self.places
 
@@ -44,13 +47,13 @@ class Unforeseen(Hypothesis):
 class Descent:
     """A search for the maps of a query.
 
-    ``nodes`` is how many nodes were visited, and ``maps`` how many maps were found. ``passed``
-    estimates which share of the tree was searched: it takes the trees below the children of each
-    node to be equally large. From it follow ``size``, how many nodes the tree has, and
-    ``expected``, how many maps. ``heed`` is called with this search after each OFTEN nodes; it
-    may raise TooLarge to end the search.
+    ``nodes`` is the number of nodes that were visited, and ``maps`` that of the maps that were
+    found. ``passed`` estimates which share of the tree was searched, as if the trees below the
+    children of a node were equally large. From it follow ``size``, an estimate of the nodes of the
+    tree, and ``expected``, an estimate of the maps. ``heed`` is called with this search after each
+    OFTEN nodes; it may raise TooLarge to end the search.
 
-    If the query minimises, nodes below which each map costs more than the best one so far are left
+    If the query minimises, a node is left if each map below it costs more than the best one so far
     (``LookAhead.least``); no map costs less than ``least``.
     """
 
@@ -71,23 +74,25 @@ class Descent:
         self._kind = kind or query.kind
         self._heed = heed
         self._watch: Watch | None = None
-        self._best: dict[Cube, Found] = {}  # all of one cost
-        self._worst: Cost | None = None  # what they cost: no map is wanted that costs more
-        self._fewest: int | None = None  # places of a map that is found
-        # How many places the next search for a map of few places allows; whether it is one for
-        # planar maps, where the genus is minimised.
+        self._best: dict[Cube, Found] = {}  # they all have one cost
+        self._worst: Cost | None = None  # their cost; no map that costs more is wanted
+        self._fewest: int | None = None  # the least number of places of the maps that were found
+        # The number of places that the next search for a map with few places allows; and, if the
+        # genus is minimised, whether that search is for planar maps.
         self._deepened: int | None = None
         self._flat = True
-        # Of each node on the way to the one where the search stands: where it arrived; its children
-        # that are to be visited, the share of the tree below each, and what a map below them costs
-        # at least.
+        # For each node on the way to the current one: the gateway of arrival; its children that are
+        # still to be visited, the share of the tree below each, and the least cost of a map below
+        # them.
         self._decided: list[int] = []
         self._way: list[tuple[list[int], float, Cost]] = []
 
     @property
     def pairs(self) -> int | None:
-        """How many pairs of visits can be of one place, so far as pairs tell; None of very many,
-        and where that is not foretold."""
+        """The number of pairs of visits that can be of one place.
+
+        It is None for very many visits, and if there is no look ahead.
+        """
         return self.node.future.pairs if isinstance(self.node, LookAhead) else None
 
     @property
@@ -97,19 +102,23 @@ class Descent:
 
     @property
     def size(self) -> float:
-        """How many nodes the tree has, as far as that can be told."""
+        """An estimate of the number of nodes of the tree."""
         return self.nodes / self.passed if self.passed else float("inf")
 
     @property
     def expected(self) -> float:
-        """How many maps there are, as far as that can be told; 0 if nothing of the tree has come to
-        its end yet. (Maps may have been found elsewhere by then.)"""
+        """An estimate of the number of maps; 0 before the end of a branch was reached.
+
+        (Maps may have been found elsewhere by then.)
+        """
         return self.maps / self.passed if self.passed else 0.0
 
     @property
     def least(self) -> Cost | None:
-        """What each map costs at least, as far as it is proved; None if nothing is minimised, or
-        there is no map."""
+        """A proved lower bound on the cost of each map.
+
+        It is None if nothing is minimised, or if there is no map.
+        """
         if not self.query.optimizes:
             return None
         costs = [cost for children, _, cost in self._way if children]
@@ -121,8 +130,11 @@ class Descent:
     def found(
         self, watch: Watch | None = None, cubes: Sequence[Cube] | None = None
     ) -> Iterator[Found | None]:
-        """What ``solving.hypotheses`` gives, in the order of the tree. Raises Stopped when the
-        watch ends the search, and what ``heed`` raises."""
+        """Find what ``solving.hypotheses`` gives, in the order of the tree.
+
+        Raises:
+            Stopped: The watch ends the search. What ``heed`` raises is passed on, too.
+        """
         self._watch = watch
         try:
             for cube in cubes or [((0, 0),)]:
@@ -140,8 +152,10 @@ class Descent:
             yield replace(one, proved=True)
 
     def _below(self) -> Iterator[Found]:
-        """The maps at the node where the search stands, and below it; better and better ones
-        if the query minimises."""
+        """The maps at the current node and below it.
+
+        They are better and better ones if the query minimises.
+        """
         node, steps, way = self.node, self.node.experience.steps, self._way
         if node.steps == steps:
             yield from self._here()
@@ -188,13 +202,16 @@ class Descent:
             decided.pop()
 
     def _enter(self, arrival: int) -> bool:
-        """Go on to a child, and over known links; False if there can be no map below."""
+        """Go on to a child, and over known links; return False if there can be no map below."""
         self.node.enter(arrival)
         return self.node.run()
 
     def _for_a_while(self, begun: Sequence[int], first: bool) -> Iterator[Found]:
-        """Look for good maps elsewhere in the tree, which cut it; ``first`` is whether that was not
-        done before. Afterwards the search stands where it stood, below the node ``begun``."""
+        """Look for good maps elsewhere in the tree, which help to cut it.
+
+        ``first`` tells whether this was not done before. Afterwards the search is at the same node
+        again, below ``begun``.
+        """
         large = self._large
         if first and not large:
             yield from self._greedily(begun)
@@ -204,12 +221,14 @@ class Descent:
             yield from self._deepen(begun, (DEEPEN_LONG if large else DEEPEN) * self.nodes)
 
     def _greedily(self, begun: Sequence[int]) -> Iterator[Found]:
-        """Best-first search by the paper's policy (section IV): the node whose map costs least so
-        far comes first, and among equals the deepest. It gives the first map that it finds, and
-        better ones. It visits at most GREEDY nodes, and once it has found a map after n nodes, at
-        most 2 * n + OFTEN. A good map is found soon that way, and cuts the tree. A node is known by
-        its decisions: where it arrived by each step that was not over a known link. Afterwards the
-        search stands where it stood, below the node ``begun``."""
+        """Best-first search by the paper's policy (section IV).
+
+        The node whose map costs least so far comes first, and of equal ones the deepest. It gives
+        the first map that it finds, and better ones. It visits at most GREEDY nodes, and once it
+        has found a map after n nodes, at most 2 * n + OFTEN. So a good map is found soon, which
+        cuts the tree. A node is identified by its decisions: where it arrived by each step that was
+        not over a known link. Afterwards the search is at the same node again, below ``begun``.
+        """
         node, steps = self.node, self.node.experience.steps
         node.go(begun[:1])
         border: list[tuple[Cost, int, tuple[int, ...]]] = [(self._of(node.cost), 0, ())]
@@ -238,10 +257,14 @@ class Descent:
         self._go((), self._decided)
 
     def _open_ones(self) -> Iterator[Found]:
-        """While no closed map is found: the best map with pending gateways, as far as it is soon
-        found. If there is a closed map, it is not the optimal one."""
+        """Find the best map with pending gateways, as far as it is found soon.
+
+        This is done while no closed map is found. If there is a closed map, this one is not
+        optimal.
+        """
 
         def heed(descent: "Descent") -> None:
+            """End the search when it has had its share of nodes."""
             if descent.nodes > (0 if self._large else GREEDY_AFTER) + OFTEN:
                 raise TooLarge
 
@@ -254,10 +277,13 @@ class Descent:
             pass
 
     def _deepen(self, begun: Sequence[int], most: int) -> Iterator[Found]:
-        """Depth-first search for a map of as few places as there can be, then of one more, and so
+        """Iterative deepening by the number of places.
+
+        A depth-first search looks for a map of as few places as possible, then of one more, and so
         on, until no map of fewer places is known or ``most`` nodes were visited: the fewer places
-        there may be, the smaller is the tree. If the genus is minimised, planar maps are sought in
-        every other search. Afterwards the search stands where it stood, below ``begun``."""
+        are allowed, the smaller is the tree. If the genus is minimised, every other search is for
+        planar maps. Afterwards the search is at the same node again, below ``begun``.
+        """
         node = self.node
         if not isinstance(node, LookAhead):
             return
@@ -298,12 +324,12 @@ class Descent:
         self._go((), self._decided)
 
     def _places(self, bound: int | None) -> int:
-        """How many places a map that is worth looking for has at most."""
+        """The largest number of places of a map that is worth looking for."""
         most = self.node.experience.steps + 1 if bound is None else bound
         return most if self._fewest is None else min(most, self._fewest - 1)
 
     def _go(self, here: Sequence[int], decided: Sequence[int]) -> None:
-        """Go from one node to another one; each is known by its decisions."""
+        """Go from one node to another one; each is identified by its decisions."""
         pairs = enumerate(zip(here, decided, strict=False))
         common = next((n for n, (a, b) in pairs if a != b), min(len(here), len(decided)))
         for _ in here[common:]:
@@ -312,20 +338,28 @@ class Descent:
             self._enter(arrival)
 
     def _open(self, share: float) -> tuple[list[int], float, Cost]:
-        """The children of the node where the search stands, in reverse order; the share of the tree
-        below each of them, if ``share`` is that of the node; and the least cost below the node."""
+        """Find the children of the current node.
+
+        Returns:
+            The children in reverse order; the share of the tree below each of them, if ``share`` is
+            that of the node; and the least cost below the node.
+        """
         children = self.node.children()[::-1]
         return children, share / max(1, len(children)), self._cost()
 
     def _cost(self) -> Cost:
-        """The least cost that a map below the node may have, most important part first; empty if
-        the query minimises nothing."""
+        """The least cost that a map below the node may have, the most important number first.
+
+        It is empty if the query minimises nothing.
+        """
         return self._of(self.node.least()) if self.query.optimizes else ()
 
     def _of(self, paths_and_places: tuple[int, int]) -> Cost:
-        """What the query minimises: the genus of the node's map, which no link makes less, its
-        exceptions, of which nothing is known before it is whole, and these numbers of paths and
-        places."""
+        """What the query minimises, for these numbers of paths and places.
+
+        The genus of the node's map comes first, which no link makes smaller, then its exceptions,
+        of which nothing is known before the map is complete.
+        """
         node, parts = self.node, self.query.parts
         genus = (node.genus,) if "genus" in parts else ()
         exceptions: Cost = ()
@@ -335,8 +369,10 @@ class Descent:
         return genus + exceptions + (paths_and_places if "minimal" in parts else ())
 
     def _here(self) -> Iterator[Found]:
-        """The map of the node where the search stands, if it is one of the query, and, where it
-        minimises, better than those before."""
+        """The map of the current node, if it is one of the query.
+
+        If the query minimises, it must be better than those before.
+        """
         cost = self._cost()
         if self._worst is not None and cost > self._worst:
             return
@@ -358,7 +394,7 @@ class Descent:
 
 
 def holds(node: Hypothesis, parts: Collection[str]) -> bool:
-    """Whether a map has the properties that are only known of the whole."""
+    """Tell whether a map has the properties that can only be checked of the whole."""
     return (
         ("euler" not in parts or node.genus == 0)
         and ("closed" not in parts or node.closed())

@@ -1,20 +1,22 @@
-"""What is known besides views, asked of two visits, or of two steps: compass, odometry, lengths,
-and visits that are known to be of one place or of two.
+"""What is known besides views: whether two visits, or two steps, agree with it.
 
-Written from the definitions (semantics: "Beyond the paper"), not from the encodings.
+It covers the compass, odometry, lengths, and visits that are known to be of one place or of two. It
+is written from the definitions (semantics: "Beyond the paper"), not from the encodings.
 """
 
 from collections import defaultdict
 
 from topomap.model.experience import Experience
 
-# What refuses an arrival, apart from what is seen.
+# The rules that can refuse an arrival, apart from views.
 RULES = ("compass", "odometry", "apart", "same", "length")
 
 
 class Evidence:
-    """What an experience tells besides views; without the ``compass``, if that is seen to by other
-    means."""
+    """What an experience tells besides views.
+
+    The ``compass`` can be left out if it is taken into account elsewhere.
+    """
 
     def __init__(self, experience: Experience, compass: bool = True):
         self.slots, self.drift, self.stretch = (
@@ -25,8 +27,8 @@ class Evidence:
         self.lengths = (None, *experience.lengths) if experience.lengths else ()
         self._compass = experience.compass if compass else ()
         self._tolerance = experience.tolerance
-        # Of each visit: where the unbroken row of shifts began that ends there, where it is by
-        # these, and how long the way was.
+        # For each visit: where the unbroken sequence of shifts began that ends there, the position
+        # by these shifts, and the length of the way.
         self._track: list[tuple[int, int, int, int]] = []
         begun = x = y = way = 0
         for step, shift in enumerate((None, *experience.shifts) if experience.shifts else ()):
@@ -38,7 +40,7 @@ class Evidence:
                 x, y, way = x + shift[0], y + shift[1], way + abs(shift[0]) + abs(shift[1])
             self._track.append((begun, x, y, way))
         self._apart = experience.apart
-        # Of each visit, the earlier ones that are known to be of its place.
+        # For each visit, the earlier ones that are known to be of its place.
         self.same: dict[int, list[int]] = defaultdict(list)
         for one, other in experience.same:
             if one != other:
@@ -51,8 +53,10 @@ class Evidence:
         return self._told
 
     def refuses(self, one: int, other: int, turn: int) -> str | None:
-        """The first of ``RULES`` by which two visits, the earlier one first, are not of one place
-        where the later one stands so many slots clockwise of the earlier one; or None."""
+        """The first of ``RULES`` by which two visits are not of one place, or None.
+
+        ``one`` is the earlier visit. The later one stands so many slots clockwise from it.
+        """
         if self._compass:
             before, after = self._compass[one], self._compass[other]
             if before is not None and after is not None:
@@ -67,7 +71,7 @@ class Evidence:
         return "apart" if (one, other) in self._apart else None
 
     def unequal(self, step: int, other: int) -> bool:
-        """Whether two steps are too unlike in length to be along one link."""
+        """Tell whether the lengths of two steps differ too much for one link."""
         if not self.lengths:
             return False
         one, two = self.lengths[step], self.lengths[other]

@@ -1,8 +1,8 @@
-"""What the steps to come can still do: when a gateway of a kind can last be linked, and which
-visits can be of one place. It is worked out once for each exploration.
+"""What the steps to come can still do.
 
-These conditions are necessary, but not sufficient: what they rule out is in no map, and what they
-allow need not be in any map either.
+It tells when a gateway of a kind can last be linked, and which visits can be of one place. It is
+computed once for each exploration. These conditions are necessary, but not sufficient: what they
+exclude is in no map, and what they allow need not be in any map either.
 """
 
 import operator
@@ -14,16 +14,16 @@ from topomap.model.experience import Experience
 from topomap.search.evidence import Evidence
 from topomap.search.hypothesis import Hypothesis
 
-# Visits T < U of one place, and by how many slots U stands clockwise of where T stands.
+# Visits T < U of one place, and how many slots clockwise from T's gateway U's gateway is.
 Pair = tuple[int, int, int]
-MOST_FACES = 100_000  # that are remembered
-MOST_BITS = 50_000  # of a set of visits, each with a slot
-MOST_PAIRS = 100_000  # of visits that look alike: pairs of later visits are not looked at
+MOST_FACES = 100_000  # the number of faces that are remembered
+MOST_BITS = 50_000  # the size of a set of visits with slots
+MOST_PAIRS = 100_000  # after so many pairs of visits that look alike, no further pairs are examined
 
 
 @lru_cache(maxsize=4)
 def future_of(experience: Experience) -> "Future":
-    """The future of an exploration, each step of which is a travel."""
+    """The future of an exploration whose steps are all travels."""
     return Future(experience, Hypothesis(experience).views)
 
 
@@ -31,8 +31,8 @@ class Future:
     """What is to come in an exploration.
 
     A gateway is the number ``step * slots + slot``, as if each step had made a new place; its
-    ``kind`` is what is seen from it. Step T leaves by a gateway of kind ``out[T]`` and arrives
-    at one of kind ``arrival[T]``.
+    ``kind`` is what is seen from it. Step T leaves by a gateway of kind ``out[T]`` and arrives at
+    one of kind ``arrival[T]``.
     """
 
     def __init__(self, experience: Experience, kinds: dict[int, int]):
@@ -46,10 +46,10 @@ class Future:
         self.arrival = [kinds[t * self.slots] for t in range(experience.steps + 1)]
         known = self._retraced()
         number = max(kinds.values()) + 1
-        # Of each kind: the steps that have an end at a gateway of it, from the last step to the
-        # first; a step with both ends at such gateways is listed twice. (A step has two ends: the
-        # gateway by which it leaves, and the one at which it arrives.) And the steps that leave by
-        # such a gateway.
+        # For each kind: the steps that have an end at a gateway of this kind, from the last step to
+        # the first; a step with both ends at such gateways is listed twice. (A step has two ends:
+        # the gateway by which it leaves, and the one at which it arrives.) And the steps that leave
+        # by such a gateway.
         self.ends: list[list[int]] = [[] for _ in range(number)]
         self.leaving: list[list[int]] = [[] for _ in range(number)]
         for step in reversed(steps):
@@ -57,24 +57,24 @@ class Future:
                 self.ends[self.out[step]].append(step)
                 self.ends[self.arrival[step]].append(step)
                 self.leaving[self.out[step]].append(step)
-        # Of the place that a step may make: how many gateways of each kind it has, apart from the
+        # For the place that a step may make: the number of its gateways of each kind, except the
         # one of arrival. (The kind of that one is listed even with 0, because the step uses up one
         # end of it.) And the last step after which all these gateways can still be linked.
         self.kinds_of: list[list[tuple[int, int]]] = []
         self.place_by: list[int] = []
         self._in_time: dict[tuple[int, ...], int] = {}
-        # The last of the visits whose pairs are looked at: those of the beginning, if it is long.
+        # The last visit whose pairs are examined; in a long exploration only the beginning is.
         self.paired = 0
         pairs = self._pairs()
         self.pairs = len(pairs) if self.paired == experience.steps else None
-        # Of each of these visits, the other ones that can be of one place with it, and how many
-        # slots clockwise of it they stand.
+        # For each of these visits, the other ones that can be of one place with it, and how many
+        # slots clockwise from its gateway theirs are.
         self._others: list[list[tuple[int, int]]] = [[] for _ in range(self.paired + 1)]
         for one, other, apart in pairs:
             self._others[one].append((other, apart))
             self._others[other].append((one, -apart))
-        # Of each visit the kind of its place, named by the least kind of its gateways; and of each
-        # such kind, how many places each map has at least.
+        # For each visit the kind of its place, named by the least kind of its gateways; for each
+        # such kind, the least number of places of a map.
         self.place_kind = [
             min(kinds[step * self.slots + slot] for slot in view)
             for step, view in enumerate(experience.views)
@@ -92,20 +92,24 @@ class Future:
             self.place_by.append(min(ends, default=experience.steps))
 
     def last(self, kind: int, many: int) -> int:
-        """The last step after which this many gateways of a kind can still be linked, because the
-        steps to come have enough ends of it; -1 if there is no such step."""
+        """The last step after which this many gateways of a kind can still be linked.
+
+        The steps to come must have enough ends of this kind. It is -1 if there is no such step.
+        """
         ends = self.ends[kind]
         return ends[many - 1] - 1 if many <= len(ends) else -1
 
     def left(self, kind: int, step: int) -> int:
-        """How many ends of a kind are still to come after a step."""
+        """The number of ends of a kind that are still to come after a step."""
         return bisect_left(self.ends[kind], -step, key=operator.neg)
 
     def last_of_face(self, face: tuple[int, ...]) -> int:
-        """The last step after which all pending gateways of a face of a planar map, at least one,
-        can still be linked; -1 if there is no such step. A link joins two gateways of one face. So
-        a step to come must leave by one of them, and from that step on there must be enough ends
-        of each kind."""
+        """The last step after which all pending gateways of a face of a planar map can be linked.
+
+        There must be at least one such gateway. It is -1 if there is no such step. A link joins two
+        gateways of one face, so a step to come must leave by one of them, and from that step on
+        there must be enough ends of each kind.
+        """
         known = self._in_time.get(face)
         if known is None:
             many: dict[int, int] = defaultdict(int)
@@ -119,9 +123,12 @@ class Future:
         return known
 
     def possible_visits(self, step: int, slot: int) -> int:
-        """The visits that can be of one place with the visit after ``step``, if that one stands at
-        ``slot`` of the place. Bit ``T * slots + S`` is set if visit T can be there and stand at
-        slot S. All bits are set of the visits after ``paired``, whose pairs are not looked at."""
+        """The visits that can be of one place with the visit after ``step``.
+
+        That visit stands at ``slot`` of the place. Bit ``T * slots + S`` is set if visit T can be
+        there and stand at slot S. For the visits after ``paired``, whose pairs are not examined,
+        all bits are set.
+        """
         if step > self.paired:
             return -1
         known = self._possible.get((step, slot))
@@ -135,8 +142,10 @@ class Future:
         return known
 
     def last_at(self, gateway: int, possible: int) -> int:
-        """The last step after which a pending gateway can still be linked if no visits but those
-        of the bits ``possible`` can be at its place; -1 if there is no such step."""
+        """The last step after which a pending gateway can still be linked.
+
+        Only visits of the bits ``possible`` can be at its place. It is -1 if there is no such step.
+        """
         if possible < 0:
             return self.experience.steps - 1
         slot = gateway % self.slots
@@ -156,9 +165,11 @@ class Future:
         return arrive, leave
 
     def _needed(self) -> list[int]:
-        """How many places of each kind a map has at least: as many as there are visits to such
-        places of which no two can be of one place. They are sought greedily: among those of one
-        straight run, and among those whose pairs are looked at."""
+        """A lower bound on the number of places of each kind in a map.
+
+        It is the number of visits to such places no two of which can be of one place. They are
+        found greedily, among those of one straight run, and among those whose pairs are examined.
+        """
         needed = [0] * (max(self.place_kind) + 1)
         visits: list[list[int]] = [[] for _ in needed]
         for visit, kind in enumerate(self.place_kind[: self.paired + 1]):
@@ -181,11 +192,10 @@ class Future:
         return needed
 
     def _retraced(self) -> set[int]:
-        """The steps that only go back over links of earlier steps, so that they add no link in any
-        map."""
+        """The steps that only go back over links of earlier steps, so add no link in any map."""
         known = set()
-        # Of each step that is not gone back over yet: its turn, and the turn that would have gone
-        # back over the step before it instead.
+        # For each step that has not been retraced yet: its turn, and the turn that would have
+        # retraced the step before it instead.
         ways: list[tuple[int, int]] = []
         back = -1
         for step, turn in enumerate(self.turns[1:], 1):
@@ -199,14 +209,15 @@ class Future:
         return known
 
     def _pairs(self) -> set[Pair]:
-        """The pairs of visits that can be of one place, up to the last visit at which not too many
-        look alike (``paired``).
+        """The pairs of visits that can be of one place.
 
-        The same is seen at both visits of such a pair, and they are not on one straight run of
-        steps (the path axiom). What follows from the pair must be possible, too: if both visits
-        leave by one gateway, or arrived by one, or if one leaves by the gateway by which the other
-        arrived, then the visits at the other ends of these links are of one place, and the two
-        steps along the link are of like length. And the pair agrees with compass and odometry."""
+        They are found up to the last visit at which not too many visits look alike (``paired``).
+        Both visits of such a pair see the same, and they are not on one straight run of steps (the
+        path axiom). What follows from the pair must be possible, too: if both visits leave by one
+        gateway, or arrived by one, or if one leaves by the gateway by which the other arrived, then
+        the visits at the other ends of these links are of one place, and the two steps along the
+        link have like lengths. And the pair agrees with compass and odometry.
+        """
         told = self.evidence
         slots, turns = self.slots, self.turns
         by_kind: dict[int, list[int]] = defaultdict(list)  # the gateways of the visits so far
@@ -261,8 +272,11 @@ class Future:
         return pairs
 
     def _following(self, one: int, other: int, apart: int) -> list[tuple[Pair, tuple[int, int]]]:
-        """What follows if two visits are of one place: more such visits, in any order, each with
-        the two steps along one link of which it follows."""
+        """What follows if two visits are of one place.
+
+        It gives further such pairs of visits, in any order, each with the two steps along one link
+        from which it follows.
+        """
         turns, slots, last = self.turns, self.slots, self.experience.steps
         pairs = []
         if other < last and turns[one + 1] == (apart + turns[other + 1]) % slots:

@@ -1,8 +1,8 @@
 """A node of the search tree of the paper's Figure 2, and the way to its children.
 
-Written from the definitions, not from the encodings: a second way to every answer. The map
-is changed in place: a step is entered, and undone. A gateway is the number
-``place * slots + slot``; a place is named by the step at which it was first visited.
+It is written from the definitions, not from the encodings: a second way to every answer. The map is
+changed in place: a step is entered, and undone. A gateway is the number ``place * slots + slot``; a
+place is named by the step at which it was first visited.
 """
 
 from collections.abc import Iterable, Iterator, Sequence
@@ -16,9 +16,9 @@ from topomap.search.evidence import Evidence
 
 OFTEN = 500  # nodes between two looks at the clock
 Face = tuple[int, ...]
-# What refuses an arrival: another view is seen there, or other landmarks; the marker is seen and
-# does not lie there, or lies there and is not seen; what is known besides views; a place would be
-# on a path twice, or the path circular; and what was asked for.
+# The rules that can refuse an arrival: another view is seen there, or other landmarks; the marker
+# is seen and does not lie there, or lies there and is not seen; what is known besides views; a
+# place would be on a path twice, or the path would be circular; and the demands.
 RULES = (
     *("view", "landmark", "marker", *KNOWN),
     *("twice", "circular", "planarity", "perpendicular", "bound"),
@@ -26,9 +26,12 @@ RULES = (
 
 
 class Link(NamedTuple):
-    """What a link changed. ``out`` and ``arrival`` are its gateways, and ``path`` and ``other`` the
-    two paths that it joined. The rest is what was there before: the faces, and for each of the two
-    paths its places and the paths that it meets."""
+    """What a link changed.
+
+    ``out`` and ``arrival`` are its gateways, and ``path`` and ``other`` are the two paths that it
+    joined. The rest is what was there before: the faces, and for each of the two paths its places
+    and the paths that it meets.
+    """
 
     out: int
     arrival: int
@@ -43,17 +46,17 @@ class Link(NamedTuple):
 
 
 class Hypothesis:
-    """A map, and the dstates at which the agent stood in it (``at``, as gateways).
+    """A map, and the dstates of the agent in it (``at``, as gateways).
 
-    ``links`` joins gateways, both ways. ``faces`` holds of each face the pending gateways,
-    in the order of its walk (the paper, section III.B): a link inside a face splits it; one
-    between two faces, which planarity forbids, makes them one. ``paths`` holds of each path
-    the set of its places, as bits; ``meets`` the set of the paths that it shares a place with, if
-    that is asked for.
+    ``links`` joins gateways in both directions. ``faces`` has for each face its pending gateways,
+    in the order of its walk (the paper, section III.B). A link inside a face splits it, and a link
+    between two faces, which planarity forbids, merges them. ``paths`` has for each path the set of
+    its places, as bits; ``meets`` has the set of the paths with which it shares a place, if that is
+    needed.
 
-    With ``planar``, ``bound`` and ``perpendicular``, children that break these are dropped. Without
-    the ``path_axiom`` a path may come back to a place of its own, and may be circular;
-    ``perpendicular`` then drops nothing, and is asked of the whole (``square``).
+    With ``planar``, ``bound`` and ``perpendicular``, children that break these demands are dropped.
+    Without the ``path_axiom`` a path may come back to one of its places, and may be circular;
+    ``perpendicular`` then drops nothing, and is checked of the whole (``square``).
     """
 
     def __init__(
@@ -68,11 +71,11 @@ class Hypothesis:
         self.planar, self.bound, self.perpendicular = planar, bound, perpendicular
         self.path_axiom = path_axiom
         self._crosses = perpendicular  # whether ``meets`` is kept
-        self.stars: list[Face] = []  # of the place that a step makes, counter-clockwise
-        self.views: dict[int, int] = {}  # of each gateway, the number of what is seen from it
+        self.stars: list[Face] = []  # the place that each step would make, counter-clockwise
+        self.views: dict[int, int] = {}  # for each gateway, the number of what is seen from it
         numbers: dict[Any, int] = {}
-        # The compass is a part of what is seen if it is told of each visit, and exact. What is seen
-        # from the gateways of a visit is worked out once for all visits that see the same.
+        # The compass is a part of the view if it is told of each visit, and exact. What is seen
+        # from the gateways of a visit is computed once for all visits that see the same.
         north = experience.compass_told() == experience.steps + 1 and not experience.tolerance
         known: dict[Any, list[tuple[int, int]]] = {}
         for step, view in enumerate(experience.views):
@@ -87,17 +90,17 @@ class Hypothesis:
             first = step * self.slots
             self.stars.append(tuple([first + slot for slot, _ in known[seen]]))
             self.views.update((first + slot, number) for slot, number in known[seen])
-        # Of each step: after which steps markers were put down that lie somewhere, and whether each
-        # is seen now.
+        # For each step: the steps that put down the markers which lie somewhere, and whether each
+        # marker is seen now.
         self.lying: dict[int, list[tuple[int, bool]]] = {}
         for step, down, spotted, _ in experience.lying():
             self.lying.setdefault(step, []).append((down, spotted))
         self.evidence = Evidence(experience, compass=not north)
-        # Of each place its visits, and of each link (by the lower of its gateways) the steps along
-        # it, if these are asked for.
+        # For each place its visits, and for each link (by the lower of its gateways) the steps
+        # along it, if these are needed.
         self.visits: dict[int, list[int]] = {0: [0]}
         self.steps_along: dict[int, list[int]] = {}
-        self.steps = 0  # that were entered
+        self.steps = 0  # the number of steps that were entered
         self.at = [0]
         self.links: dict[int, int] = {}
         self.faces: tuple[Face, ...] = (self.stars[0],)
@@ -106,15 +109,15 @@ class Hypothesis:
         self._axis = {gateway: self._axis_of(gateway) for star in self.stars for gateway in star}
         self.places = 0
         self.matches = 0  # links between known places: m in the paper's equation (1)
-        self._joined: dict[int, int] = {}  # an axis to another one of its path
+        self._joined: dict[int, int] = {}  # from an axis to another one of its path
         self.parted = bool(experience.starts)  # whether there may be several components
-        self._part: dict[int, int] = {}  # a place to another one of its component
+        self._part: dict[int, int] = {}  # from a place to another one of its component
         self.components = 1
         self._trail: list[Link | None] = []
         self._add_place(0)
 
     def _told_straight(self, step: int) -> frozenset[Slots]:
-        """Which gateways of a visit are told to be on one path."""
+        """The pairs of gateways of a visit that are told to be on one path."""
         told = self.experience.straight
         return told[step] if told else frozenset()
 
@@ -126,14 +129,16 @@ class Hypothesis:
         pairs: frozenset[Slots],
         points: int | None,
     ) -> tuple[Any, ...]:
-        """What is seen from a gateway of a visit, in slots clockwise from it, and where it points
-        if the visit's own gateway points to ``points``."""
+        """What is seen from a gateway of a visit, in slots clockwise from it.
+
+        It includes the direction of the gateway, if the visit's own gateway points to ``points``.
+        """
         star = frozenset((other - slot) % self.slots for other in view)
         told = frozenset(frozenset((end - slot) % self.slots for end in pair) for pair in pairs)
         return star, landmarks, told, None if points is None else (points + slot) % self.slots
 
     def _axis_of(self, gateway: int) -> int:
-        """A name for the axis on which a gateway lies at its place: the lower slot of it."""
+        """The name of the axis of a gateway at its place, which is the lower slot of the axis."""
         place, slot = divmod(gateway, self.slots)
         if not self.experience.straight:
             return gateway - slot + slot % (self.slots // 2)
@@ -146,23 +151,26 @@ class Hypothesis:
 
     @property
     def dstates(self) -> tuple[DState, ...]:
-        """The place and the gateway after each step, as ``at/3`` names them."""
+        """The place and the gateway after each step, named as in ``at/3``."""
         known = {gateway: divmod(gateway, self.slots) for gateway in {*self.at}}
         return tuple(map(known.__getitem__, self.at))
 
     @property
     def cost(self) -> tuple[int, int]:
-        """Paths and places: the policy prefers fewer."""
+        """The numbers of paths and places; the policy prefers fewer."""
         return len(self.paths), self.places
 
     @property
     def grown(self) -> bool:
-        """Whether the last step added a link, or there is no step."""
+        """Whether the last step added a link; true also if there is no step."""
         return not self._trail or self._trail[-1] is not None
 
     @property
     def genus(self) -> int:
-        """Genus, by Euler's formula: a tree with ``matches`` more links; or several components."""
+        """The genus, by Euler's formula.
+
+        The map is a tree with ``matches`` more links, or has several components.
+        """
         if self.parted:
             links = len(self.links) // 2
             return (2 * self.components - self.places + links - len(self.faces)) // 2
@@ -170,26 +178,31 @@ class Hypothesis:
 
     @property
     def map(self) -> TopologicalMap:
-        """The map, apart from this object."""
+        """The map as an object of its own."""
         return self.experience.map_of(self.dstates)
 
     def closed(self) -> bool:
-        """No gateway is pending."""
+        """Whether no gateway is pending."""
         return not any(self.faces)
 
     def travelled(self) -> bool:
-        """Every path has a link. (It then holds two places or more; but one place that it comes
-        back to at once is enough, where the path axiom does not hold.)"""
+        """Whether every path has a link.
+
+        Then it has two places or more. Without the path axiom, it is enough that a link leads from
+        a place back to this place.
+        """
         alone = [path for path, places in self.paths.items() if not places & (places - 1)]
         return not alone or {*alone} <= {self.path(gateway) for gateway in self.links}
 
     def square(self) -> bool:
-        """The map is qualitatively perpendicular (the paper, section IV)."""
+        """Whether the map is qualitatively perpendicular (the paper, section IV)."""
         return all(self._square(path, places) for path, places in self.paths.items())
 
     def _square(self, path: int, places: int) -> bool:
-        """Whether this path, which has these places, meets no other path twice and is in no
-        triangle: no two paths that meet it at different places meet each other."""
+        """Tell whether a path with these places meets no path twice and is in no triangle.
+
+        It is in no triangle if no two paths that meet it at different places meet each other.
+        """
         met = [(places & of, of) for other, of in self.paths.items() if other != path]
         met = [(common, of) for common, of in met if common]
         if any(common & (common - 1) for common, _ in met):
@@ -198,14 +211,14 @@ class Hypothesis:
 
     @property
     def rests(self) -> str | None:
-        """Why the next step is no travel: "start", of a new log, or "look"; None if it is one."""
+        """Why the next step is not a travel: "start" of a new log, or "look"; None if it is one."""
         step = self.steps + 1
         if step in self.experience.starts:
             return "start"
         return "look" if step in self.experience.looks else None
 
     def out(self) -> int:
-        """The gateway by which the next step leaves, which is a travel."""
+        """The gateway by which the next step leaves, which must be a travel."""
         place, slot = divmod(self.at[-1], self.slots)
         if self.experience.tolerance:
             return place * self.slots + self.experience.way_out(self.steps + 1, (place, slot))[1]
@@ -214,13 +227,13 @@ class Hypothesis:
         return place * self.slots + (slot + turn) % self.slots
 
     def component(self, place: int) -> int:
-        """The component of the map in which a place is, named by one of its places."""
+        """The component of the map to which a place belongs, named by one of its places."""
         while place in self._part:
             place = self._part[place]
         return place
 
     def path(self, gateway: int) -> int:
-        """The path through a gateway and its opposite one, named by such an axis of it."""
+        """The path on which a gateway lies, named by one of its axes."""
         axis, joined = self._axis[gateway], self._joined
         while axis in joined:
             axis = joined[axis]
@@ -231,22 +244,24 @@ class Hypothesis:
         return face_of(self.faces, gateway)
 
     def fitting(self, gateways: Face) -> list[int]:
-        """Those gateways whose view is what the next step sees."""
+        """Select the gateways from which what the next step sees would be seen."""
         if self.experience.tolerance:
             return [gateway for gateway in gateways if self._alike(gateway)]
         seen = self.views[(self.steps + 1) * self.slots]
         return [gateway for gateway in gateways if self.views[gateway] == seen]
 
     def _alike(self, gateway: int) -> bool:
-        """Whether the next step sees what is seen from this gateway."""
+        """Tell whether the next step sees what is seen from this gateway."""
         step = self.steps + 1
         if not self.experience.tolerance:
             return self.views[gateway] == self.views[step * self.slots]
         return self.experience.alike(*divmod(gateway, self.slots), step)
 
     def marked(self, gateway: int) -> bool:
-        """Whether the place of this gateway agrees with what the next step sees of markers: it sees
-        a marker if this is the place where it lies, and does not see it if not."""
+        """Tell whether the place of this gateway agrees with what the next step sees of markers.
+
+        The step must see a marker if and only if it lies at this place.
+        """
         place, at, slots = gateway // self.slots, self.at, self.slots
         told = self.lying.get(self.steps + 1, ())
         return all(seen == (place == at[down] // slots) for down, seen in told)
@@ -268,16 +283,20 @@ class Hypothesis:
         return next((rule for rule in KNOWN if rule in rules), None)
 
     def allowed(self, arrivals: Iterable[int]) -> list[int]:
-        """Those gateways that agree with what the next step sees of the marker, and with what is
-        known besides views."""
+        """Select the gateways that agree with what is known of the next step besides its view.
+
+        This includes what it sees of the marker.
+        """
         marked = [gateway for gateway in arrivals if self.marked(gateway)]
         if not self.evidence:
             return marked
         return [gateway for gateway in marked if not self.denied(gateway)]
 
     def children(self) -> list[int]:
-        """Where the next step can arrive: the gateways of known places, and gateway 0 of
-        a new one. Where the link is known, its other end, if the view is the predicted one.
+        """The gateways at which the next step can arrive.
+
+        They are gateways of known places, and gateway 0 of a new one. If the link is known, it is
+        the other end of the link, provided that the view is the predicted one.
         """
         if self.rests:
             return self._resting()
@@ -293,7 +312,7 @@ class Hypothesis:
         return self.allowed(arrivals)
 
     def _near(self, out: int) -> Face:
-        """The pending gateways with which a planar map, or any, can link this one."""
+        """The pending gateways to which this one can be linked, in a planar map or in any map."""
         if not self.planar:
             return tuple(gateway for face in self.faces for gateway in face)
         near = self.face(out)
@@ -305,8 +324,11 @@ class Hypothesis:
         return near
 
     def _resting(self) -> list[int]:
-        """Where the agent can be after a step that is no travel: after a second look where it was,
-        and where a new log begins at any gateway of a known place, or at a new one."""
+        """Where the agent can be after a step that is not a travel.
+
+        After a second look it is where it was. A new log begins at any gateway of a known place, or
+        at a new place.
+        """
         step = self.steps + 1
         if self.rests == "look":
             return self.allowed(self.fitting((self.at[-1],)))
@@ -321,9 +343,12 @@ class Hypothesis:
         return self.allowed(arrivals)
 
     def tried(self) -> Iterator[tuple[int, str | None]]:
-        """Where the next step might arrive: at the other end of its link; or if that is not
-        known, at any other pending gateway, or a new place. Each with the first of ``RULES``
-        that refuses it; the children are those that none does."""
+        """The gateways at which the next step might arrive, and the rules that refuse them.
+
+        It might arrive at the other end of its link or, if that is not known, at any other pending
+        gateway, or at a new place. Each comes with the first of ``RULES`` that refuses it; the
+        children are those that no rule refuses.
+        """
         if self.rests:
             yield from self._tried_resting()
             return
@@ -345,7 +370,7 @@ class Hypothesis:
         yield from self._tried_new()
 
     def _tried_resting(self) -> Iterator[tuple[int, str | None]]:
-        """The same of a step that is no travel."""
+        """The same for a step that is not a travel."""
         if self.rests == "look":
             yield self.at[-1], self._mistaken(self.at[-1])
             return
@@ -355,14 +380,14 @@ class Hypothesis:
         yield from self._tried_new()
 
     def _tried_new(self) -> Iterator[tuple[int, str | None]]:
-        """The same of a new place."""
+        """The same for a new place."""
         new = (self.steps + 1) * self.slots
         full = self.bound is not None and self.places >= self.bound
         refused = "marker" if not self.marked(new) else self.denied(new)
         yield new, refused or ("bound" if full else None)
 
     def _mistaken(self, gateway: int) -> str | None:
-        """The first rule by which what the next step sees refuses this gateway, or None."""
+        """The first rule by which the view of the next step refuses this gateway, or None."""
         step, (place, slot) = self.steps + 1, divmod(gateway, self.slots)
         if self._alike(gateway):
             return self.denied(gateway) if self.marked(gateway) else "marker"
@@ -373,8 +398,11 @@ class Hypothesis:
         return "compass" if self.marked(gateway) else "marker"
 
     def _joins(self, path: int, other: int) -> bool:
-        """Whether a link may make these paths one: by the path axiom they are two and share no
-        place; and a map that is to be ``perpendicular`` must stay so."""
+        """Tell whether a link may join these paths.
+
+        By the path axiom they must be two paths that share no place; and a map that must be
+        ``perpendicular`` must stay so.
+        """
         if not self.path_axiom:
             return True
         if self.paths[path] & self.paths[other]:
@@ -382,10 +410,12 @@ class Hypothesis:
         return not self.perpendicular or self._squares(self.meets[path], self.meets[other])
 
     def _squares(self, meets: int, others: int) -> bool:
-        """Whether the map stays perpendicular when a path that meets ``meets`` and one that meets
-        ``others`` become one. The two share no place, so a path that meets both would meet the new
-        one twice. And if a path that meets the one meets a path that meets the other, the new path
-        makes a triangle with them."""
+        """Tell whether the map stays perpendicular when two paths become one.
+
+        They meet the paths ``meets`` and ``others``. The two share no place, so a path that meets
+        both would meet the new one twice. And if a path that meets the one meets a path that meets
+        the other, the new path makes a triangle with them.
+        """
         if meets & others:
             return False
         return not any(self.meets[met] & others for met in numbers(meets))
@@ -404,7 +434,7 @@ class Hypothesis:
             self.steps_along.setdefault(min(out, arrival), []).append(self.steps)
 
     def _rest(self, arrival: int) -> None:
-        """Go on by a step that is no travel, to one of the children."""
+        """Go on by a step that is not a travel, to one of the children."""
         place = arrival // self.slots
         self._trail.append(None)
         self.at.append(arrival)
@@ -430,7 +460,7 @@ class Hypothesis:
         self.links[out], self.links[arrival] = arrival, out
         path, other = self.path(out), self.path(arrival)
         merged = parts[1] if self.parted and parts[0] != parts[1] else None
-        if path == other:  # it is circular now
+        if path == other:  # the path is circular now
             kept = self.paths[path], self.meets[path]
             return Link(out, arrival, path, path, faces, kept[0], kept[0], kept[1], kept[1], merged)
         places, more = self.paths[path], self.paths.pop(other)
@@ -444,8 +474,10 @@ class Hypothesis:
         return Link(out, arrival, path, other, faces, places, more, meets, met, merged)
 
     def _cross(self, path: int, other: int, meets: int, met: int) -> None:
-        """Of the paths that meet two others, ``meets`` the one and ``met`` the other, say that they
-        meet the one that these become; or take that back."""
+        """Note which paths meet the path that two paths become, or take that back.
+
+        Of the paths that meet these two, ``meets`` meet the one and ``met`` the other.
+        """
         both = (1 << path) | (1 << other)
         for crossing in numbers(met):
             self.meets[crossing] ^= both & ~(meets >> crossing & 1 and 1 << path)
@@ -497,8 +529,10 @@ class Hypothesis:
             del self.paths[axis], self.meets[axis]
 
     def run(self) -> bool:
-        """Go on over known links, as far as this goes fast; False if there can be no map below.
-        What is gone is undone together with the last step that was entered."""
+        """Go on over known links as far as possible; return False if there can be no map below.
+
+        These steps are undone together with the last step that was entered.
+        """
         return True
 
     def goto(self, dstates: Sequence[DState]) -> None:
@@ -506,7 +540,7 @@ class Hypothesis:
         self.go([place * self.slots + slot for place, slot in dstates])
 
     def go(self, at: Sequence[int]) -> None:
-        """The same, to the node with these gateways."""
+        """Go to the node with these gateways, by way of what the two have in common."""
         pairs = enumerate(zip(self.at, at, strict=False))
         common = next((step for step, (a, b) in pairs if a != b), min(len(self.at), len(at)))
         while len(self.at) > common:
@@ -524,9 +558,11 @@ def face_of(faces: Iterable[Face], gateway: int) -> Face:
 
 
 def linked(faces: tuple[Face, ...], out: int, arrival: int, star: Face | None) -> tuple[Face, ...]:
-    """The faces after a link between two pending gateways; ``star`` is the place of the second one,
-    its gateways counter-clockwise, if that is new. A link inside a face splits it, and one between
-    two faces makes them one."""
+    """The faces after a link between two pending gateways.
+
+    ``star`` is the place of the second gateway, as its gateways counter-clockwise, if it is a new
+    place. A link inside a face splits it, and a link between two faces merges them.
+    """
     here = face_of(faces, out)
     rest = after(here, out)
     others = [face for face in faces if face is not here]
@@ -541,13 +577,13 @@ def linked(faces: tuple[Face, ...], out: int, arrival: int, star: Face | None) -
 
 
 def after(face: Face, gateway: int) -> Face:
-    """The other gateways of a face, in the order of its walk from this one on."""
+    """The other gateways of a face, in the order of its walk, beginning after this one."""
     index = face.index(gateway)
     return face[index + 1 :] + face[:index]
 
 
 def numbers(bits: int) -> Iterator[int]:
-    """The numbers that a set holds as bits."""
+    """The numbers of a set that is held as bits."""
     while bits:
         one = bits & -bits
         yield one.bit_length() - 1

@@ -1,13 +1,13 @@
-"""The hypotheses that live while an experience goes on: the paper's search (Figure 2) breadth
-first, where nobody knows what is to come.
+"""The hypotheses that live while an experience goes on.
 
-Each hypothesis is a map (``Form``) and the last visit of its way (``Visit``), which knows the one
-before. A map is never changed: a step along a known link shares that of the step before, and a
-step that adds a link, or a place, makes a new one. So a step costs what the map costs, at the
-most, however long the log is, and a step that was taken back leaves no trace.
+This is the paper's search (Figure 2), breadth-first, without knowledge of the steps to come. Each
+hypothesis is a map (``Form``) and the last visit of its way (``Visit``), which knows the visit
+before. A map is never changed: a step along a known link shares the map of the step before, and a
+step that adds a link or a place makes a new map. So a step costs at most as much as the map is
+large, however long the log is, and a step that was taken back leaves no trace.
 
-Written from the definitions, as ``hypothesis.py`` is, and with its names: a gateway is the number
-``place * slots + slot``, and a place is named by the step at which it was first visited.
+It is written from the definitions, like ``hypothesis.py``, and with its names: a gateway is the
+number ``place * slots + slot``, and a place is named by the step at which it was first visited.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -20,17 +20,20 @@ from topomap.model.experience import DState, Experience, Step
 from topomap.model.topology import TopologicalMap
 from topomap.search.hypothesis import Face, face_of, linked
 
-Track = tuple[int, int, int, int]  # where a row of shifts began; where it is by these; how long
+# Where a sequence of shifts began; the position by them; the length.
+Track = tuple[int, int, int, int]
 Sides = tuple[int, int, int, int]
-# Of the visits of a place: the compass slots of its slot 0; the row of shifts of its last visits,
-# and the least of their ``_sides``.
+# For the visits of a place: the compass slots of its slot 0; the sequence of shifts of its last
+# visits, and the least of their ``_sides``.
 Known = tuple[frozenset[int], int, Sides]
 NOTHING: Known = frozenset(), -1, (0, 0, 0, 0)
 
 
 class Visit:
-    """A visit of a way: the gateway where the agent stands, and the visit before. ``jump`` is one
-    long before, so that any visit is found in few steps."""
+    """A visit of a way: the gateway of the agent, and the visit before.
+
+    ``jump`` is a visit long before, so that any visit is found in few steps.
+    """
 
     __slots__ = ("before", "gateway", "jump", "step")
 
@@ -52,7 +55,7 @@ class Visit:
         return visit
 
     def gateways(self, since: int = 0) -> list[int]:
-        """The gateways of the way from a step on, to this visit."""
+        """The gateways of the way, from a step to this visit."""
         found, visit = [], self
         while visit.step > since:
             found.append(visit.gateway)
@@ -63,8 +66,11 @@ class Visit:
 
 @dataclass(frozen=True)
 class Star:
-    """What a visit sees, as a place of its own: its gateways counter-clockwise, what is seen from
-    each (by number), and the axis on which each is."""
+    """What a visit sees, as a place of its own.
+
+    It has the gateways counter-clockwise, what is seen from each (as a number), and the axis of
+    each.
+    """
 
     face: Face
     views: Mapping[int, int]
@@ -72,18 +78,20 @@ class Star:
 
     @cached_property
     def axes(self) -> tuple[int, ...]:
-        """Its axes."""
+        """The axes of the place."""
         return tuple(dict.fromkeys(self.axis.values()))
 
     @cached_property
     def ranks(self) -> dict[int, int]:
-        """Its gateways, each with its number, clockwise."""
+        """The gateways, each with its number, clockwise."""
         return {gateway: rank for rank, gateway in enumerate(reversed(self.face))}
 
 
 class Told:
-    """What is told of the steps so far, and what follows from that alone. It grows with each step,
-    and shrinks when steps are taken back."""
+    """What is told of the steps so far, and what follows from that alone.
+
+    It grows with each step, and shrinks when steps are taken back.
+    """
 
     def __init__(self, slots: int, first: Step, drift: int, stretch: int, tolerance: int):
         self.slots, self.drift, self.stretch = slots, drift, stretch
@@ -91,11 +99,12 @@ class Told:
         self.straight = first.straight is not None
         self.steps: list[Step] = []
         self.tracks: list[Track] = []
-        self.arrivals: list[int] = []  # what each step sees from where it stands, by number
+        # For each step, the number of what is seen from the agent's gateway.
+        self.arrivals: list[int] = []
         # The markers that lie somewhere before each step, each with the step that put it down.
         self.down: list[dict[str | None, int]] = []
-        self.starts = 0  # how many logs began after the first one
-        self.without_compass = 0  # visits of which no compass is told
+        self.starts = 0  # the number of logs after the first one
+        self.without_compass = 0  # the number of visits without a compass
         self._numbers: dict[Any, int] = {}
         self._stars: dict[int, Star] = {}
         self.add(first)
@@ -122,7 +131,7 @@ class Told:
         self.without_compass += step.compass is None
 
     def cut(self, last: int) -> None:
-        """Take steps back, so that this one is the last."""
+        """Take steps back until this one is the last."""
         for number in range(last + 1, len(self.steps)):
             self.starts -= self.steps[number].start
             self.without_compass -= self.steps[number].compass is None
@@ -132,7 +141,9 @@ class Told:
 
     def lying(self) -> dict[str | None, int]:
         """The markers that lie somewhere after the last step, each with the step that put it down.
-        (Taking up comes before putting down.)"""
+
+        (After one step, a marker is taken up before it is put down.)
+        """
         number = self.last
         step, down = self.steps[number], self.down[number]
         done = [(kind, None) for kind in step.marks] + [*step.things]
@@ -143,8 +154,10 @@ class Told:
         return {name: at for name, at in down.items() if name not in picked} | put
 
     def spotted(self, step: int) -> Iterator[tuple[int, bool]]:
-        """Of the markers that lie somewhere before a step: which step put each down, and whether
-        this one sees it."""
+        """The markers that lie somewhere before a step.
+
+        Each comes with the step that put it down, and whether this step sees it.
+        """
         if self.down[step]:
             told = self.steps[step]
             seen: set[str | None] = {None} if told.marks & {"pick", "marker"} else set()
@@ -169,7 +182,7 @@ class Told:
         return self._stars[step]
 
     def _seen_from(self, step: int, slot: int) -> int:
-        """The number of what a visit sees, as it is seen from that slot."""
+        """The number of what a visit sees from that slot."""
         told, slots = self.steps[step], self.slots
         seen = frozenset((other - slot) % slots for other in told.view)
         pairs = frozenset(
@@ -180,26 +193,26 @@ class Told:
         return self._numbers.setdefault((seen, told.landmarks, pairs), len(self._numbers))
 
     def alike(self, gateway: int, step: int) -> bool:
-        """Whether a step sees what is seen from this gateway."""
+        """Tell whether a step sees what is seen from this gateway."""
         place, slot = divmod(gateway, self.slots)
         if not self.tolerance:
             return self.star(place).views[gateway] == self.arrivals[step]
         return self._two(place, step).alike(0, slot, 1)
 
     def out(self, gateway: int, step: int) -> int:
-        """The gateway by which a travel leaves, if the agent stands at this one before it."""
+        """The gateway by which a travel leaves, if the agent is at this one before it."""
         turn, (place, slot) = self.steps[step].turn, divmod(gateway, self.slots)
         assert turn is not None
         return place * self.slots + self.slot_at(place, slot, step - 1, turn)
 
     def slot_at(self, place: int, slot: int, visit: int, seen: int) -> int:
-        """See ``Experience.slot_at``."""
+        """Translate a slot of a visit into a slot of its place, as ``Experience.slot_at`` does."""
         if not self.tolerance:
             return (slot + seen) % self.slots
         return self._two(place, visit).slot_at(0, slot, 1, seen)
 
     def _two(self, place: int, visit: int) -> Experience:
-        """Two visits by themselves."""
+        """An experience of these two visits alone."""
         both = self.steps[place], self.steps[visit]
         return Experience(
             self.slots,
@@ -211,14 +224,14 @@ class Told:
         )
 
     def experience(self) -> Experience:
-        """The experience so far; it takes as long as the log is."""
+        """The experience so far; making it takes time in proportion to its length."""
         return experience_of(self.slots, self.steps, self.drift, self.stretch, self.tolerance)
 
 
 def experience_of(
     slots: int, steps: Sequence[Step], drift: int, stretch: int, tolerance: int
 ) -> Experience:
-    """The experience of these steps."""
+    """Make the experience of these steps."""
     moving = steps[1:]
     numbered = [*enumerate(steps)]
     drops, picks, markers = (
@@ -249,9 +262,12 @@ def experience_of(
 
 
 class Form:
-    """A map. ``links`` joins gateways, both ways. ``faces`` holds of each face the pending
-    gateways, in the order of its walk; ``paths`` of each path the set of its places, as bits, by
-    the ``number`` of each place. ``made`` has the step that made each link, by its lower gateway.
+    """A map.
+
+    ``links`` joins gateways in both directions. ``faces`` has for each face its pending gateways,
+    in the order of its walk. ``paths`` has for each path the set of its places, as bits, by the
+    ``number`` of each place. ``made`` has the step that made each link, by the lower gateway of the
+    link.
     """
 
     __slots__ = (
@@ -283,7 +299,7 @@ class Form:
 
     @property
     def cost(self) -> tuple[int, int]:
-        """Paths and places."""
+        """The numbers of paths and places."""
         return len(self.paths), len(self.number)
 
     @property
@@ -293,7 +309,7 @@ class Form:
 
     @property
     def sizes(self) -> tuple[int, int, int, int, int]:
-        """Places, links, paths, genus, and pending gateways."""
+        """The numbers of places, links and paths, the genus, and the number of pending gateways."""
         places, links = len(self.number), len(self.links) // 2
         genus = (2 * self.components - places + links - len(self.faces)) // 2
         return places, links, len(self.paths), genus, sum(map(len, self.faces))
@@ -303,19 +319,19 @@ class Form:
         return face_of(self.faces, gateway)
 
     def component(self, place: int) -> int:
-        """The component of the map in which a place is, named by one of its places."""
+        """The component of the map to which a place belongs, named by one of its places."""
         while place in self.part:
             place = self.part[place]
         return place
 
     def path(self, axis: int) -> int:
-        """The path on which an axis is, named by one of its axes."""
+        """The path on which an axis lies, named by one of its axes."""
         while axis in self.joined:
             axis = self.joined[axis]
         return axis
 
     def with_place(self, place: int, star: Star) -> "Form":
-        """The map with one more place, that has no link."""
+        """The map with one more place, which has no link."""
         form = Form(self)
         form._add_place(place, star)
         form.faces = (*self.faces, star.face)
@@ -342,17 +358,17 @@ class Form:
         form.links[out], form.links[arrival] = arrival, out
         form.made[min(out, arrival)] = step
         path, other = form.path_of(out, told), form.path_of(arrival, told)
-        if path != other:  # else it is circular now
+        if path != other:  # otherwise the path is circular now
             form.joined[other] = path
             form.paths[path] |= form.paths.pop(other)
         return form
 
     def path_of(self, gateway: int, told: Told) -> int:
-        """The path of a gateway."""
+        """The path on which a gateway lies."""
         return self.path(told.star(gateway // told.slots).axis[gateway])
 
     def world(self, told: Told) -> TopologicalMap:
-        """The same map as others have it."""
+        """The same map as a TopologicalMap."""
         if self._world is None:
             self._world = self._as_world(told)
         return self._world
@@ -375,7 +391,7 @@ class Form:
         return TopologicalMap(slots, stars, links, landmarks, across)
 
     def exceptions(self, told: Told) -> tuple[NamedException, ...]:
-        """The exceptions to consistent boundaries, each with the paths that it is of."""
+        """The exceptions to consistent boundaries, each with its paths."""
         if self._exceptions is None:
             world = self.world(told)
             first: dict[DState, int] = {}
@@ -387,9 +403,11 @@ class Form:
 
 
 class Living:
-    """A hypothesis: a map, and the last visit of the way. ``known`` holds of each place what is
-    known of its visits besides views, and ``along`` of each link, by its lower gateway, the least
-    and the greatest length of the steps along it."""
+    """A hypothesis: a map, and the last visit of the way.
+
+    ``known`` has for each place what is known of its visits besides views. ``along`` has for each
+    link, by its lower gateway, the smallest and the largest length of the steps along it.
+    """
 
     __slots__ = ("along", "form", "known", "visit")
 
@@ -404,7 +422,7 @@ class Living:
 
 
 class Tree:
-    """Which hypotheses come of which: those that have what was asked for."""
+    """Which hypotheses are children of which; they meet the demands."""
 
     def __init__(
         self, told: Told, planar: bool = False, bound: int | None = None, path_axiom: bool = True
@@ -420,7 +438,10 @@ class Tree:
         return Living(form, visit, known, {})
 
     def children(self, of: Living) -> list[int]:
-        """Where the next step can arrive, in ascending order: see ``Hypothesis.children``."""
+        """The gateways at which the next step can arrive, in ascending order.
+
+        ``Hypothesis.children`` explains them.
+        """
         told, form, step = self.told, of.form, of.visit.step + 1
         full = self.bound is not None and len(form.number) >= self.bound
         new = [] if full else [step * told.slots]
@@ -441,7 +462,7 @@ class Tree:
         return sorted(gateway for gateway in near + new if self._allowed(of, gateway, step))
 
     def _near(self, form: Form, out: int) -> list[int]:
-        """The pending gateways with which a planar map, or any, can link this one."""
+        """The pending gateways to which this one can be linked, in a planar map or in any map."""
         if not self.planar:
             return [gateway for face in form.faces for gateway in face]
         near = [*form.face(out)]
@@ -453,12 +474,13 @@ class Tree:
         return near
 
     def _allowed(self, of: Living, gateway: int, step: int) -> bool:
-        """Whether a step can arrive at this gateway by what is known besides views."""
+        """Tell whether a step can arrive at this gateway by what is known besides views."""
         told = self.told
         place, slot = divmod(gateway, told.slots)
         now = told.steps[step]
 
         def was(earlier: int) -> int:
+            """The place of the agent after an earlier step."""
             return of.visit.back(earlier).gateway // told.slots
 
         if any(seen != (was(down) == place) for down, seen in told.spotted(step)):
@@ -489,9 +511,11 @@ class Tree:
         return True
 
     def _sides(self, track: Track) -> Sides:
-        """Where odometry says that the agent is, to each of four sides, less what it may be wrong
-        by. A visit can be of the place of an earlier one if none of these is above that of the
-        earlier one, for that is what the rule comes to: 100 * |x - u| <= drift * (way - less)."""
+        """Where the agent is by odometry, towards each of four sides, minus the possible error.
+
+        A visit can be of the place of an earlier one if none of these numbers exceeds that of the
+        earlier one. This is equivalent to the rule 100 * |x - u| <= drift * (way - less).
+        """
         _, x, y, way = track
         error = self.told.drift * way
         return 100 * x - error, -100 * x - error, 100 * y - error, -100 * y - error
@@ -512,7 +536,7 @@ class Tree:
                 few, many = along.get(link, (now.length, now.length))
                 along = {**along, link: (min(few, now.length), max(many, now.length))}
         known, visit = of.known, Visit(arrival, of.visit)
-        if told.tracks[step][0] == step - 1:  # only now the visit before it counts
+        if told.tracks[step][0] == step - 1:  # only now does the visit before it count
             known = self._noted(known, of.visit, None)
         if now.compass is not None or told.tracks[step][0] < step:
             known = self._noted(known, visit, now.compass)
@@ -521,7 +545,7 @@ class Tree:
     def _noted(
         self, known: Mapping[int, Known], visit: Visit, compass: int | None
     ) -> Mapping[int, Known]:
-        """What is known of places, with a visit more."""
+        """What is known of places after one more visit."""
         told = self.told
         place, slot = divmod(visit.gateway, told.slots)
         norths, begun, bounds = known.get(place, NOTHING)

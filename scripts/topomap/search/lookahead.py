@@ -1,5 +1,7 @@
-"""A node of the search tree that looks ahead: it compares what the maps that are asked for need
-with what the steps to come can still do. A child below which there can be no such map is left out.
+"""A node of the search tree that looks ahead.
+
+It compares what the maps that are asked for need with what the steps to come can still do. A child
+is left out if there can be no such map below it.
 """
 
 from typing import NamedTuple
@@ -11,8 +13,11 @@ from topomap.search.hypothesis import Hypothesis, after
 
 
 class _Before(NamedTuple):
-    """What a step changed, and the ``ran`` steps over known links that were gone after it: where it
-    arrived, and what was known before of the places and gateways of which more is known now."""
+    """What a step changed, and the ``ran`` steps over known links that followed it.
+
+    It has the place of arrival, and what was known before of the places and gateways of which
+    more is known now.
+    """
 
     place: int
     possible: dict[int, int]
@@ -24,22 +29,22 @@ class _Before(NamedTuple):
 class LookAhead(Hypothesis):
     """A hypothesis that has only those children below which there may be a map of a query.
 
-    ``possible_at`` holds for each place the visits that can be there, as bits
+    ``possible_at`` has for each place the visits that can be there, as bits
     (``Future.possible_visits``): those that can be of one place with each visit that was there. No
     other visit arrives there.
 
-    In a closed map each pending gateway must be linked by a step to come. ``linked_by`` holds for
+    In a closed map each pending gateway must be linked by a step to come. ``linked_by`` has for
     each of them the last step after which that is still possible, given the visits that fit at its
-    place. ``pending`` holds how many there are of each kind: the steps to come must have as many
-    ends of this kind. ``in_time`` is the last step after which the gateways of each face of a
-    planar map can still be linked (``Future.last_of_face``).
+    place. ``pending`` has the number of pending gateways of each kind: the steps to come must have
+    as many ends of this kind. ``in_time`` is the last step after which the gateways of each face of
+    a planar map can still be linked (``Future.last_of_face``).
     """
 
     def __init__(self, experience: Experience, query: Query):
         parts = query.parts
         planar = bool(parts & {"planar", "euler"})
         super().__init__(experience, planar, query.places, "perpendicular" in parts)
-        self._meets_once = "boundary" in parts  # two paths that meet twice break the boundaries
+        self._meets_once = "boundary" in parts  # two paths that meet twice are an exception
         self._crosses |= self._meets_once
         self._closed = "closed" in parts
         self.future = future_of(experience)
@@ -48,12 +53,12 @@ class LookAhead(Hypothesis):
         self.linked_by: dict[int, int] = {}
         self.pending = [0] * len(self.future.ends)
         self.in_time = experience.steps
-        self.dead_ends = [  # gateways of a place with none straight across
+        self.dead_ends = [  # the number of gateways of a place with none opposite
             2 * len({self._axis[gateway] for gateway in star}) - len(star) for star in self.stars
         ]
         self.path_ends = self.dead_ends[0]
-        # How many places of each kind the map has, and how many places each map below this node has
-        # at least.
+        # The number of places of each kind in the map, and the least number of places of each map
+        # below this node.
         self.places_of = [0] * len(self.future.needed)
         self.least_places = sum(self.future.needed)
         self._count_place(0, 1)
@@ -66,7 +71,7 @@ class LookAhead(Hypothesis):
             self._enter_faces()
 
     def children(self) -> list[int]:
-        """Where the next step can arrive, as far as what is to come allows it."""
+        """The gateways at which the next step can arrive, as far as what is to come allows it."""
         out, step = self.out(), self.steps + 1
         if out in self.links:
             arrivals = self._known(out, step)
@@ -84,19 +89,21 @@ class LookAhead(Hypothesis):
         return self.allowed(arrivals)
 
     def _exceeds(self, kind: int) -> bool:
-        """Whether one more place of a kind is more than each map needs."""
+        """Tell whether one more place of a kind would be more than each map needs."""
         return self.places_of[kind] >= self.future.needed[kind]
 
     def _count_place(self, place: int, many: int) -> None:
-        """Count a place that was made (1), or is taken back (-1)."""
+        """Count a place that was made (1), or that is taken back (-1)."""
         kind = self.future.place_kind[place]
         before = max(self.places_of[kind], self.future.needed[kind])
         self.places_of[kind] += many
         self.least_places += max(self.places_of[kind], self.future.needed[kind]) - before
 
     def _known(self, out: int, step: int) -> list[int]:
-        """The other end of a link, if the next step can arrive there and what is pending can wait
-        until after it."""
+        """The other end of a known link, if the next step can arrive there.
+
+        The pending gateways must be able to wait until after it.
+        """
         arrival = self.links[out]
         place, slot = divmod(arrival, self.slots)
         if not self.possible_at[place] >> (step * self.slots + slot) & 1:
@@ -113,14 +120,14 @@ class LookAhead(Hypothesis):
         return [arrival]
 
     def _others_wait(self, out: int, step: int) -> bool:
-        """Whether a link from this gateway leaves time for the faces that it does not touch."""
+        """Tell whether a link from this gateway leaves time for faces that it does not touch."""
         if self.in_time >= step or not self.planar:
             return True
         last = self.future.last_of_face
         return all(not face or out in face or last(face) >= step for face in self.faces)
 
     def _matches(self, out: int, step: int, due: list[int]) -> list[int]:
-        """The gateways of known places where the next step can arrive by a link that is new."""
+        """The gateways of known places at which the next step can arrive by a new link."""
         future, slots, views, last = self.future, self.slots, self.views, self.future.last_of_face
         seen, possible_at = future.arrival[step], self.possible_at
         faces = (self.face(out),) if self.planar else self.faces
@@ -157,8 +164,10 @@ class LookAhead(Hypothesis):
         return [gateway for gateway, by in self.linked_by.items() if by < step and gateway != out]
 
     def _makes_place(self, out: int, step: int) -> bool:
-        """Whether the steps to come can still link all pending gateways if the next step makes a
-        new place."""
+        """Tell whether the next step may make a new place.
+
+        The steps after it must still be able to link all pending gateways.
+        """
         if not self._closed:
             return True
         future, pending = self.future, self.pending
@@ -197,7 +206,7 @@ class LookAhead(Hypothesis):
         self._narrow(place, slot)
 
     def _narrow(self, place: int, slot: int) -> bool:
-        """Take in that the last visit is at this place. Returns whether less can be there now."""
+        """Note that the last visit is at this place; tell whether fewer visits can be there now."""
         possible = self.possible_at.get(place)
         here = self.future.possible_visits(self.steps, slot)
         narrowed = here if possible is None else possible & here
@@ -216,8 +225,10 @@ class LookAhead(Hypothesis):
         return True
 
     def run(self) -> bool:
-        """Go on over known links, as far as this goes fast; False if there can be no map below.
-        What is gone is undone together with the last step that was entered."""
+        """Go on over known links as far as possible; return False if there can be no map below.
+
+        These steps are undone together with the last step that was entered.
+        """
         begun, last = self.steps, self.experience.steps
         if begun == last or self.evidence or not self._before or self.out() not in self.links:
             return True
@@ -248,8 +259,7 @@ class LookAhead(Hypothesis):
         return alive
 
     def _until(self) -> int:
-        """The last step up to which known links can be gone, because what is pending can wait so
-        long."""
+        """The last step up to which known links can be followed while pending gateways wait."""
         last = self.experience.steps
         if not self._closed:
             return last
@@ -263,7 +273,7 @@ class LookAhead(Hypothesis):
             self.in_time = min(in_time, default=self.experience.steps)
 
     def undo(self) -> None:
-        """Go one step back, and before it all those that were run after it."""
+        """Go one step back, after going back over the known links that followed it."""
         before = self._before.pop()
         if before.ran:
             del self.at[-before.ran :]
@@ -291,9 +301,11 @@ class LookAhead(Hypothesis):
         self.in_time = before.in_time
 
     def least(self) -> tuple[int, int]:
-        """How many paths and places each map below this node has at least. A path has two ends,
-        each of them at a pending gateway, or at one with none straight across. In maps that need
-        not be closed, gateways stay pending if the steps to come have too few ends of their kind.
+        """Proved lower bounds on the paths and places of each map below this node.
+
+        A path has two ends, each of them at a pending gateway, or at a gateway with none opposite.
+        In maps that need not be closed, gateways stay pending if the steps to come have too few
+        ends of their kind.
         """
         ends = self.path_ends
         if not self._closed:

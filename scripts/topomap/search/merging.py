@@ -1,12 +1,12 @@
-"""Counting maps without listing them: hypotheses that have the same future are one.
+"""Counting maps without listing them: hypotheses that have the same future are merged.
 
-Two hypotheses have the same future if the steps to come can do the same in both. Of a hypothesis
-this depends on where the agent stands; on the gateways that a step to come can still link or leave
-by; on where those of them that have a link lead; and on which of the paths on which they lie may
-become one. So hypotheses are counted by these, step by step: a dynamic programme. Its keys
-are exact; nothing is hashed to a number that could be the same for two of them.
+Two hypotheses have the same future if the steps to come can do the same in both. For a hypothesis
+this depends on the dstate of the agent; on the gateways that a step to come can still link or leave
+by; on the other ends of those that are linked; and on which of the paths on which they lie may be
+joined. So hypotheses are counted by these, step by step: this is dynamic programming. Its keys are
+exact; nothing is hashed to a number that could be the same for two of them.
 
-Planar maps hardly merge, as each face has its gateways in an order of its own.
+Planar maps are hardly ever merged, because the gateways of each face have an order of their own.
 """
 
 from collections.abc import Iterator
@@ -21,19 +21,19 @@ from topomap.search.future import future_of
 from topomap.search.hypothesis import OFTEN, Hypothesis, numbers
 
 Key = tuple[Any, ...]
-Counted = list[Any]  # a state, and how many hypotheses are of it
-PARTS = {"closed", "perpendicular"}  # that maps which are counted in this way may be asked to have
+Counted = list[Any]  # a state, and the number of its hypotheses
+PARTS = {"closed", "perpendicular"}  # the demands that this way of counting allows
 
 
 class State(NamedTuple):
-    """What hypotheses of one future have in common.
+    """What hypotheses with one future have in common.
 
-    ``pending`` holds the pending gateways that a step to come can link, in order, and ``path`` the
-    path of each: paths are numbered in the order of their first such gateway. ``links`` holds the
+    ``pending`` has the pending gateways that a step to come can link, in order, and ``path`` the
+    path of each: paths are numbered in the order of their first such gateway. ``links`` has the
     linked gateways by which a step to come can leave, each with the gateway at the other end.
-    ``meets`` holds for each path, as bits, the paths that share a place with it. If maps are to be
-    perpendicular, ``twice`` holds those that meet a path which meets it, and ``thrice`` those from
-    which two paths in a row lead to it. ``places`` is how many places there are, if that counts.
+    ``meets`` has for each path, as bits, the paths that share a place with it. If maps must be
+    perpendicular, ``twice`` has those that meet a path which meets it, and ``thrice`` those from
+    which two further paths lead to it. ``places`` is the number of places, if that matters.
     """
 
     here: int
@@ -47,7 +47,7 @@ class State(NamedTuple):
 
 
 def refusal(experience: Experience, query: Query) -> str | None:
-    """Why maps cannot be counted by merging, or None."""
+    """Say why maps cannot be counted by merging, or None."""
     asked = query.parts - PARTS
     if asked:
         return f"{min(asked)} (only closed, perpendicular, a bound and a horizon may be asked for)"
@@ -74,7 +74,11 @@ class Merging:
     """The number of maps of an experience, or of those that are closed or perpendicular."""
 
     def __init__(self, experience: Experience, query: Query):
-        """Raises InputError, one line, if there is what keeps hypotheses from being merged."""
+        """Prepare the count.
+
+        Raises:
+            InputError: Something keeps hypotheses from being merged. One line.
+        """
         if query.horizon is not None:
             experience = experience.cut(query.horizon)
         if why := refusal(experience, query):
@@ -86,10 +90,10 @@ class Merging:
         whole = Hypothesis(experience)
         self.future = future_of(experience)
         self.kinds, self.stars, self._axes = whole.views, whole.stars, whole.axes
-        self.largest = 0  # states at one step
+        self.largest = 0  # the largest number of states at one step
         self._visits_at: dict[int, int] = {}
         self._possible = [self.future.possible_visits(visit, 0) for visit in range(len(self.stars))]
-        # Of each turn, the steps that make it, as bits; and what is known of a gateway, numbered.
+        # For each turn, the steps that make it, as bits; and what is known of gateways, by number.
         turned: dict[int, int] = {}
         for step in range(1, experience.steps + 1):
             turn = self.future.turns[step]
@@ -98,8 +102,11 @@ class Merging:
         self._named: dict[Any, int] = {}
 
     def counts(self, watch: Watch | None = None) -> Iterator[int]:
-        """How many hypotheses are left after each step, from 0. Those of which it is seen already
-        that no map comes of them are left out; the last number is that of the maps."""
+        """The number of hypotheses after each step, from 0.
+
+        Hypotheses of which it is already known that no map comes of them are left out; the last
+        number is that of the maps.
+        """
         level: dict[Key, Counted] = {}
         pending, relations = self._place(0, {}, [[], [], []])
         self._add(level, 1, 0, 0, pending, relations, {}, 1)
@@ -150,7 +157,7 @@ class Merging:
             self._add(level, many, step, new, grown, one, ends, state.places + 1)
 
     def _fits(self, gateway: int, step: int) -> bool:
-        """Whether a step can arrive at a gateway of a known place."""
+        """Tell whether a step can arrive at a gateway of a known place."""
         place, slot = divmod(gateway, self.slots)
         if self.kinds[gateway] != self.future.arrival[step]:
             return False
@@ -159,7 +166,7 @@ class Merging:
     def _place(
         self, place: int, pending: dict[int, int], relations: list[list[int]]
     ) -> tuple[dict[int, int], list[list[int]]]:
-        """The same with a new place. Its paths meet there."""
+        """Add a new place, at which its paths meet."""
         first = len(relations[0])
         axes = self._axes(place)
         number = {axis: first + n for n, axis in enumerate(dict.fromkeys(axes.values()))}
@@ -167,14 +174,14 @@ class Merging:
         meets, twice, thrice = ([*of] for of in relations)
         for path in number.values():
             meets.append(every & ~(1 << path))
-            twice.append(0)  # those that meet here are barred by that
+            twice.append(0)  # paths that meet here are excluded by that
             thrice.append(0)
         return pending | {g: number[axis] for g, axis in axes.items()}, [meets, twice, thrice]
 
     def _join(
         self, path: int, other: int, pending: dict[int, int], relations: list[list[int]]
     ) -> None:
-        """Make two paths one, which keeps the first one's number."""
+        """Join two paths; the result keeps the number of the first one."""
         meets, twice, thrice = relations
         for gateway, of in pending.items():
             if of == other:
@@ -182,8 +189,8 @@ class Merging:
         both = (1 << path) | (1 << other)
         here, there = meets[path], meets[other]
         if self.perpendicular:
-            # A path that meets the one is now, by the new path, next but one to each that meets
-            # the other; and from there to each that is next but one to it, next but two.
+            # Through the new path, a path that meets the one is now two steps from each path that
+            # meets the other, and three steps from each path that is two steps from it.
             near, far = twice[path], twice[other]
             for one in numbers((here | near | there | far) & ~both):
                 meets_one, meets_other = here >> one & 1, there >> one & 1
@@ -212,8 +219,10 @@ class Merging:
         links: dict[int, int],
         places: int,
     ) -> None:
-        """Count so many hypotheses more of a state, of which only that is kept which the steps to
-        come can use."""
+        """Count more hypotheses of a state.
+
+        Of the state, only what the steps to come can use is kept.
+        """
         uses = self._uses(step, here, pending, links)
         kept = [g for g in pending if g in uses]
         if self.closed and (len(kept) < len(pending) or (kept and step == self.experience.steps)):
@@ -244,7 +253,7 @@ class Merging:
         ranked = sorted(order, key=order.__getitem__)
         key = (
             tuple([self._named.setdefault(uses[g], len(self._named)) for g in ranked]),
-            # How many slots lie between two gateways of one place.
+            # The number of slots between two gateways of one place.
             tuple(
                 [
                     (g - before) % slots if g // slots == before // slots else -1
@@ -276,8 +285,11 @@ class Merging:
     def _uses(
         self, step: int, here: int, pending: dict[int, int], links: dict[int, int]
     ) -> dict[int, tuple[int, int]]:
-        """The gateways that the steps to come can use: each with the visits that can stand there,
-        and the steps that can leave by it, as bits."""
+        """The gateways that the steps to come can use.
+
+        Each comes with the visits that can stand there, and the steps that can leave by it, as
+        bits.
+        """
         slots, visits = self.slots, self._visits
         later = -1 << (step + 1)
         arrive: dict[int, int] = {here: 1 << step}
@@ -326,15 +338,17 @@ class Merging:
         ends: dict[int, int],
         uses: dict[int, tuple[int, int]],
     ) -> dict[int, int]:
-        """The gateways that the steps to come can use, in an order that does not depend on the
-        names of places, as far as that is soon found; each with its number."""
+        """The gateways that the steps to come can use, each with its number.
+
+        Their order does not depend on the names of places, as far as such an order is found soon.
+        """
         slots, known = self.slots, self._named
         rings: dict[int, list[int]] = {}
         for gateway in sorted(uses):
             rings.setdefault(gateway // slots, []).append(gateway)
         waiting = {*pending}
-        # What is known of each gateway, as a number: the same numbers stand for the same knowledge,
-        # in all states of a step.
+        # What is known of each gateway, as a number; in all states of a step, equal numbers stand
+        # for equal knowledge.
         colour: dict[int, int] = {}
         for ring in rings.values():
             before = ring[-1]
@@ -386,7 +400,7 @@ class Merging:
 
 
 def _least_turn(ring: tuple[int, ...]) -> tuple[int, tuple[int, ...]]:
-    """The least of the tuples that are this one turned, and by how many places it is turned."""
+    """The smallest rotation of a tuple, and by how many places it is rotated."""
     least = min(ring)
     turns = [(ring[n:] + ring[:n], n) for n, one in enumerate(ring) if one == least]
     turned, n = min(turns)
@@ -394,7 +408,7 @@ def _least_turn(ring: tuple[int, ...]) -> tuple[int, tuple[int, ...]]:
 
 
 def _rename(relation: list[int], path: int, other: int) -> None:
-    """Have a path stand for another one, too."""
+    """Join a path to another one in a relation."""
     relation[path] |= relation[other]
     for one in numbers(relation[other]):
         relation[one] |= 1 << path

@@ -1,7 +1,7 @@
 """Search of the tree of hypotheses (the paper, Figure 2): the second way to every answer.
 
-Each order stands at the nodes of the tree, one after the other, in one ``Hypothesis`` that
-it moves; what is to be known of a node is read while it stands there.
+Each order visits the nodes of the tree with one ``Hypothesis``, which it moves; what is to be known
+of a node is read while the hypothesis is there.
 """
 
 import heapq
@@ -19,7 +19,7 @@ from topomap.search.hypothesis import OFTEN, Hypothesis
 
 
 def root(experience: Experience, query: Query) -> Hypothesis:
-    """The root of the tree in which the children that the query forbids are dropped."""
+    """The root of the tree without the children that the query forbids."""
     if query.horizon is not None:
         experience = experience.cut(query.horizon)
     planar, perpendicular = (part in query.parts for part in PRUNING)
@@ -29,7 +29,7 @@ def root(experience: Experience, query: Query) -> Hypothesis:
 
 @spared
 def depth_first(node: Hypothesis, watch: Watch | None = None) -> Iterator[Hypothesis]:
-    """The nodes from this one down; memory grows with the steps, not with the tree."""
+    """Visit the nodes from this one down; memory grows with the steps, not with the tree."""
     open_children = [_children(node)[::-1]]
     yield node
     nodes = 0
@@ -49,7 +49,7 @@ def depth_first(node: Hypothesis, watch: Watch | None = None) -> Iterator[Hypoth
 
 @spared
 def breadth_first(node: Hypothesis, watch: Watch | None = None) -> Iterator[Hypothesis]:
-    """The nodes from this one down, step by step; memory holds two levels of the tree."""
+    """Visit the nodes from this one down, step by step; memory holds two levels of the tree."""
     level = [top := node.dstates]
     while level:
         children = []
@@ -65,8 +65,11 @@ def breadth_first(node: Hypothesis, watch: Watch | None = None) -> Iterator[Hypo
 
 @spared
 def best_first(node: Hypothesis, watch: Watch | None = None) -> Iterator[Hypothesis]:
-    """The nodes by the optimality policy (the paper, section IV): fewest paths, then fewest
-    places; among equals the deepest. Taking the next one after a leaf is backtracking."""
+    """Visit the nodes by the optimality policy (the paper, section IV).
+
+    The node with the fewest paths, then the fewest places comes first, and of equal ones the
+    deepest. Taking the next one after a leaf is backtracking.
+    """
     border = [(node.cost, 0, node.dstates)]
     nodes = 0
     while border:
@@ -90,13 +93,16 @@ def _children(node: Hypothesis) -> list[int]:
 
 
 def cubes(experience: Experience, query: Query, least: int = 64) -> tuple[list[Cube], int]:
-    """Nodes that share out the hypotheses, at least so many of them if there are as many, so that
-    a long run can be shared out, cut and resumed.
+    """Find nodes that divide the hypotheses, so that a long run can be shared, cut and resumed.
 
-    They are of like size, as far as it can be told from the first level of the tree that has
-    32 times as many nodes (or else the last one): the branches of the tree with more of
-    these are shared out again. The second figure is the step of that level: the hypotheses after
-    that step, and after each later one, begin with one of the nodes each."""
+    There are at least ``least`` of them, if there are as many. They are of similar size, as far as
+    this can be told from the first level of the tree that has 32 times as many nodes (or else from
+    the last level): the branches with more nodes of this level are divided again.
+
+    Returns:
+        The nodes, and the step of that level. The hypotheses after that step, and after each later
+        one, begin with exactly one of the nodes each.
+    """
     level: list[Cube] = []
     for node in breadth_first(root(experience, query)):
         if level and len(node.at) > len(level[0]):
@@ -117,7 +123,7 @@ def cubes(experience: Experience, query: Query, least: int = 64) -> tuple[list[C
 
 
 def top(node: Hypothesis, cubes: Collection[Cube]) -> Iterator[Hypothesis]:
-    """The nodes from this one down that are in none of the branches that begin with the cubes."""
+    """Visit the nodes from this one down that are in none of the branches of the cubes."""
     border = [node.dstates]
     while border:
         at = border.pop()
@@ -134,5 +140,9 @@ def hypotheses(
     kind: str | None = None,
     cubes: Sequence[Cube] | None = None,
 ) -> Iterator[Found | None]:
-    """What ``solving.hypotheses`` gives, in the order of the tree. Raises Stopped."""
+    """Find what ``solving.hypotheses`` gives, in the order of the tree.
+
+    Raises:
+        Stopped: The watch ends the search.
+    """
     return Descent(experience, query, kind).found(watch, cubes)

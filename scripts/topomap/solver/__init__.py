@@ -1,1 +1,1 @@
-"""clingo, wherever it is called."""
+"""clingo: everything that calls it."""

@@ -1,5 +1,7 @@
-"""Boundary consistency while an experience goes on: what links make a place lie at both sides of
-a path (semantics: "Boundary consistency")."""
+"""Boundary consistency while an experience goes on (semantics: "Boundary consistency").
+
+It finds which links make a place lie on both sides of a path.
+"""
 
 from collections.abc import Callable, Iterator, Sequence
 from typing import Any, Protocol
@@ -18,13 +20,16 @@ class Followed(Protocol):
 
 
 class Boundaries(clingo.Propagator):
-    """Refuses, where ``consistent`` holds, maps in which a place is left and right of a path, or
-    on it and beside it (semantics: "Boundary consistency"), by the steps that make it so. As
-    links are added this stays so; a clause holds for all steps to come."""
+    """A propagator that refuses maps with inconsistent boundaries, where ``consistent`` holds.
+
+    In such a map a place is both left and right of a path, or both on it and beside it (semantics:
+    "Boundary consistency"). The clause names the steps that make it so. As further links do not
+    change this, a clause holds for all later steps.
+    """
 
     def __init__(self, follower: Followed):
         self._of = follower
-        self._at: list[list[tuple[int, int, int]]] = []  # by steps: place, slot, literal
+        self._at: list[list[tuple[int, int, int]]] = []  # for each step: place, slot, literal
         self._asked = 0
 
     def init(self, init: clingo.PropagateInit) -> None:
@@ -56,8 +61,11 @@ class Boundaries(clingo.Propagator):
 
 
 def crossed(slots: int, turns: Sequence[int | None], at: Sequence[DState]) -> list[set[int]]:
-    """Why the boundaries of a map are not consistent: sets of steps, the links of which make
-    it so, the smallest first."""
+    """Find why the boundaries of a map are not consistent.
+
+    Returns:
+        Sets of steps whose links make it so, the smallest first.
+    """
     links: dict[Gateway, tuple[Gateway, int]] = {}
     for step, (turn, (place, slot), arrival) in enumerate(zip(turns, at, at[1:], strict=False), 1):
         if turn is None:
@@ -67,7 +75,7 @@ def crossed(slots: int, turns: Sequence[int | None], at: Sequence[DState]) -> li
             links[out], links[arrival] = (arrival, step), (out, step)
 
     def ray(gateway: Gateway) -> Iterator[tuple[Gateway, int]]:
-        """The arrivals, straight on, each with the step that made the link."""
+        """The arrivals of a walk straight on, each with the step that made the link."""
         while gateway in links:
             arrival, step = links[gateway]
             yield arrival, step
@@ -75,7 +83,7 @@ def crossed(slots: int, turns: Sequence[int | None], at: Sequence[DState]) -> li
 
     found: list[set[int]] = []
     for end, slot in links:
-        # Each path once, from its end.
+        # Each path is taken once, from its end.
         if (end, (slot + slots // 2) % slots) in links:
             continue
         path, by = [(end, slot)], []
@@ -94,7 +102,7 @@ def _sides(
     by: Sequence[int],
     ray: Callable[[Gateway], Iterator[tuple[Gateway, int]]],
 ) -> Iterator[set[int]]:
-    """Why a place is at both sides of a path, or on it and beside it."""
+    """Find why a place is on both sides of a path, or both on it and beside it."""
     on = {place: number for number, (place, _) in enumerate(path)}
     beside: dict[Any, tuple[bool, int, list[int]]] = {}
     for number, (place, heading) in enumerate(path):

@@ -1,6 +1,6 @@
-"""Which way gives the maps of a query: the search where its tree is small, and else clingo.
+"""Which way finds the maps of a query: the search if its tree is small, otherwise clingo.
 
-That is decided by counted work, never by time, so that the same input has the same answer on any
+The choice is made by counted work, never by time, so that the same input has the same answer on any
 machine and at any load. The search is tried first. After 500, 1,000, 2,000 nodes and so on it
 estimates how large its tree is (``Descent.size``). It is given up if the tree is too large.
 """
@@ -15,19 +15,19 @@ from topomap.search.descent import MANY_PAIRS, Descent, TooLarge
 from topomap.search.hypothesis import OFTEN
 from topomap.solver import phases, solving
 
-# The tree may have so many nodes: NODES_A_PAIR for each pair of visits that can be of one place,
-# because the ground program grows with these pairs, but at most FEW in all: that takes as long as
-# clingo takes for some 100,000 rules. With more than MANY_PAIRS pairs the program could hardly be
+# The tree may have NODES_A_PAIR nodes for each pair of visits that can be of one place, because
+# the ground program grows with these pairs; but at most FEW in all, which takes as long as clingo
+# takes for some 100,000 rules. With more than MANY_PAIRS pairs the program could hardly be
 # grounded, unless that is done in phases.
 NODES_A_PAIR, FEW = 150, 75_000
 # A query that minimises, and allows pending gateways, is harder for clingo: there are maps of
 # any cost.
 FEW_OPEN = 250_000
-# Or the tree may have so many nodes for each map, if these are more: clingo takes as long to find
-# one more map as the search takes to visit so many nodes.
-NODES_A_MAP, NODES_A_MAP_ALONE = 20, 0.4  # with a part that prunes the tree, and without
-NODES_A_STEP = 10  # and so many for each step, as the first map alone takes one
-# If more maps than these are found, the search is not ended any more, and gives each map when it
+# If this is more, the tree may have so many nodes for each map: clingo takes as long to find one
+# more map as the search takes to visit so many nodes.
+NODES_A_MAP, NODES_A_MAP_ALONE = 20, 0.4  # with a part that prunes the tree, and without one one
+NODES_A_STEP = 10  # and so many for each step, because the first map takes one for each
+# If more maps than these are found, the search is no longer given up, and gives each map when it
 # finds it.
 KEPT = 10_000
 
@@ -37,19 +37,20 @@ AUTO, CLINGO, SEARCH = "auto", "clingo", "search"
 class Trial:
     """A search for the maps of a query, which is given up where clingo would do better.
 
-    ``by`` is the way that is to give the maps. If ``whole``, no more is to be looked for: ``maps``
-    has all maps, or the best ones if the query minimises, or one more than ``limit``. If not,
-    ``maps`` has those that were found by now (if the query minimises, the last one is the best of
-    them). ``rest`` gives the others, if they are to come by this search. Or it was given up
-    because of the size of its tree; or for good, if ``fault`` says why: the watch has ended it, or
-    it had found ``limit`` maps by then. ``least`` is what each map costs at least, if there is any,
-    as far as it is proved, or None.
+    ``by`` is the way that is to find the maps. If ``whole``, no more need be looked for: ``maps``
+    has all maps, or the best ones if the query minimises, or one more than ``limit``. Otherwise
+    ``maps`` has those that have been found (if the query minimises, the last one is the best of
+    them), and ``rest`` gives the others if this search is to find them. If it is not, the search
+    was given up because of the size of its tree; or for good, if ``fault`` says why: the watch has
+    ended it, or it had found ``limit`` maps. ``least`` is a proved lower bound on what each map
+    costs, or None.
 
     Parameters:
-        experience, query: what was seen and done, and which maps are asked for.
-        watch: what may end the search; its ``by`` is set to the way.
-        kind: what the maps are said to be; by default what the query calls them.
-        limit: how many maps are wanted; None: all of them.
+        experience: What the agent saw and did.
+        query: Which maps are asked for.
+        watch: What may end the search; its ``by`` is set to the way.
+        kind: What the maps are said to be; by default what the query calls them.
+        limit: The number of maps that is wanted; None for all.
     """
 
     def __init__(
@@ -70,7 +71,7 @@ class Trial:
         if query.encoding != "work" or query.noise is not None or experience.assumed:
             return
         if experience.parted or experience.tolerance or "no_path_axiom" in query.parts:
-            return  # nothing is foretold of these
+            return  # there is no look ahead for these
         watch.by = SEARCH
         descent = Descent(experience, query, kind, self._heed)
         self._pairs = descent.pairs
@@ -84,7 +85,7 @@ class Trial:
         watch.by = self.by
 
     def _try(self, descent: Descent, watch: Watch, limit: int | None) -> None:
-        """Search until it is decided which way is to give the maps."""
+        """Search until it is decided which way is to find the maps."""
         known, minimises = watch.found, self._query.optimizes
         assert self.rest is not None
         try:
@@ -111,16 +112,22 @@ class Trial:
         self.least = descent.least
 
     def _heed(self, descent: Descent) -> None:
-        """Raises TooLarge if the tree is larger than it is worth, unless little is left of it. If
-        the query minimises, the tree shrinks as better maps are found, and an estimate would be
-        too large: so the nodes that were visited are compared."""
+        """Give the search up if the tree is larger than is worth while.
+
+        It goes on if little of the tree is left. If the query minimises, the tree shrinks as better
+        maps are found, and an estimate would be too large, so the number of visited nodes is
+        compared.
+
+        Raises:
+            TooLarge: The tree is too large.
+        """
         if self._committed:
             return
         nodes, worth, size = descent.nodes, self._worth(descent), 0.0
         if nodes >= self._next:
             while self._next <= nodes:
                 self._next *= 2
-            # Before the first end of a branch nothing can be told of the others.
+            # Before the end of a branch is reached, nothing is known of the other branches.
             if descent.passed and not self._query.optimizes:
                 size = descent.size
         little = descent.size - nodes <= nodes / 4
@@ -128,7 +135,10 @@ class Trial:
             raise TooLarge
 
     def _worth(self, descent: Descent) -> float:
-        """How many nodes are worth it. However few visits look alike, each step is a node."""
+        """The largest number of nodes that is worth while.
+
+        Even if few visits look alike, each step is a node.
+        """
         steps = NODES_A_STEP * descent.node.experience.steps
         if self._query.optimizes and "closed" not in self._query.parts:
             return max(FEW_OPEN, steps)
@@ -140,9 +150,11 @@ class Trial:
 def hypotheses(
     experience: Experience, query: Query, watch: Watch, kind: str | None = None
 ) -> Iterator[Found | None]:
-    """What ``solving.hypotheses`` gives of a query that minimises, by the way that suits;
-    ``watch.by`` says by which. Of maps that are not proved to be best, only better ones than the
-    best of the search are given."""
+    """Find the maps of a query that minimises, by the way that has less work to do.
+
+    It gives what ``solving.hypotheses`` gives, and sets ``watch.by`` to the way. Of the maps that
+    are not proved to be best, only those are given that are better than the best one of the search.
+    """
     trial = Trial(experience, query, watch, kind)
     if trial.whole:
         yield from trial.maps
@@ -150,7 +162,7 @@ def hypotheses(
     if trial.rest:
         yield from trial.rest
         return
-    best = trial.maps[-1:]  # an open one only as long as no closed map is found
+    best = trial.maps[-1:]  # it is open only if no closed map is found
     if best:
         watch.by, watch.least = SEARCH, trial.least
         yield from best

@@ -1,10 +1,10 @@
-"""The maps that none is preferred to by set inclusion: the policy of circumscription.
+"""The maps to which no other is preferred by set inclusion: the policy of circumscription.
 
-By clingo, with ``encodings/circumscribe.lp``: up to LISTED maps are listed, and compared by their
-paths and places. Of more, a map is guessed, and then checked: the solver is asked for a map that is
-preferred to it, which takes its place, until there is none. Then all maps with the same paths and
-places are answers, and each further map must lack some of these. By search: all maps are listed,
-and compared by the definition.
+By clingo, with ``encodings/circumscribe.lp``, up to LISTED maps are listed and compared by their
+paths and places. If there are more, a map is guessed and then checked: the solver is asked for a
+map that is preferred to it, which takes its place, until there is none. Then all maps with the same
+paths and places are answers, and each further map must lack some of these. By search, all maps are
+listed, and compared by the definition.
 """
 
 from collections.abc import Callable, Iterator
@@ -24,7 +24,7 @@ from topomap.solver.programs import Program, calls
 from topomap.solver.shown import Shown
 from topomap.solver.threads import Put
 
-LISTED = 10_000  # maps: to list and compare so many takes less than to check each kind of them
+LISTED = 10_000  # maps: up to so many are listed and compared, which is quicker than checks
 PREFER, REPEAT = clingo.Function("prefer"), clingo.Function("repeat")
 Names = list[clingo.Symbol]  # the atoms has/2 of a map: its paths and places
 
@@ -32,12 +32,15 @@ Names = list[clingo.Symbol]  # the atoms has/2 of a map: its paths and places
 def circumscribed(
     experience: Experience, query: Query, watch: Watch, by: str = "clingo"
 ) -> Iterator[Found]:
-    """The circumscribed maps of a query, by one of WAYS.
+    """Find the circumscribed maps of a query, by one of WAYS.
 
-    ``circumscribed``: of the closed maps with consistent boundaries those that none of them is
-    preferred to; where there is none, ``circumscribed so far``: the same, pending gateways
-    allowed. Those with the same paths and places come one after the other. Raises Stopped at the
-    time limit, or out of memory.
+    They are ``circumscribed`` if they are those of the closed maps with consistent boundaries to
+    which no other one is preferred. If there is no such map, they are ``circumscribed so far``: the
+    same of all maps with consistent boundaries, which may have pending gateways. Maps with the same
+    paths and places come one after the other.
+
+    Raises:
+        Stopped: The time limit has passed, or memory ran out.
     """
     way, admitted = WAYS[by], query.having("boundary")
     some = False
@@ -60,7 +63,7 @@ def _by_search(experience: Experience, query: Query, watch: Watch, kind: str) ->
     for found in traversal.hypotheses(experience, query, watch):
         if found:
             maps.setdefault(extent(experience, found.at), []).append(found.at)
-    watch.found = known  # those were not answers
+    watch.found = known  # the maps before were not answers
     kept = least(maps, watch.tick)
     for one, alike in maps.items():
         for at in alike if one in kept else ():
@@ -75,7 +78,7 @@ WAYS: dict[str, Callable[[Experience, Query, Watch, str], Iterator[Found]]] = {
 
 
 def _work(program: Program, put: Put) -> None:
-    """Puts the dstates of each map."""
+    """Put the dstates of each map."""
     control: Any = program.control
     program.changed = True
     shown, going = Shown(), True
@@ -83,6 +86,7 @@ def _work(program: Program, put: Put) -> None:
     many = 0
 
     def add(model: clingo.Model) -> bool:
+        """Add a map to the list."""
         nonlocal many
         many += 1
         at, others = shown.of(model.symbols(shown=True))
@@ -104,6 +108,7 @@ def _work(program: Program, put: Put) -> None:
     maps.clear()
 
     def take(model: clingo.Model) -> bool:
+        """Put a map."""
         nonlocal going
         going = put(shown.of(model.symbols(shown=True))[0])
         return going
@@ -128,12 +133,13 @@ def _work(program: Program, put: Put) -> None:
 
 
 def _first(program: Program) -> Names | None:
-    """The paths and places of the first map that the solver finds, if there is one."""
+    """The paths and places of the first map that the solver finds, or None."""
     control: Any = program.control
     control.configuration.solve.models = 1
     found: list[Names] = []
 
     def take(model: clingo.Model) -> bool:
+        """Note the paths and places of the map."""
         found.append([atom for atom in model.symbols(shown=True) if atom.name == "has"])
         return False
 
@@ -142,15 +148,21 @@ def _first(program: Program) -> Names | None:
 
 
 def _settled(result: clingo.SolveResult) -> None:
-    """Raises Stopped if the solver was interrupted."""
+    """Check that the solver was not interrupted.
+
+    Raises:
+        Stopped: It was.
+    """
     if result.interrupted:
         raise Stopped(INTERRUPT)
 
 
 @contextmanager
 def _given(control: clingo.Control, ask: clingo.Symbol, names: Names) -> Iterator[None]:
-    """While this map is given, and the solver is asked for those that are preferred to it, or
-    have its paths and places."""
+    """A context in which this map is given to the solver.
+
+    The solver is asked for maps that are preferred to it, or that have its paths and places.
+    """
     atoms = [ask, *(clingo.Function("given", atom.arguments) for atom in names)]
     for atom in atoms:
         control.assign_external(atom, True)

@@ -16,14 +16,14 @@ from topomap.runtime.watch import Stopped, Watch
 from topomap.solver import solving
 from topomap.solver.share import AHEAD, LOST, Result, Unit, Work
 
-PATIENCE = 10  # seconds that a cluster has to answer
+PATIENCE = 10  # seconds within which a cluster must answer
 
 
 class Cluster:
-    """A running Dask cluster. It does the units of lost workers again."""
+    """A running Dask cluster, which does the units of lost workers again."""
 
     def __init__(self, address: str):
-        if not address.strip():  # of which Dask would make a cluster of its own
+        if not address.strip():  # with an empty one Dask would make a cluster of its own
             raise InputError("--dask: an empty address")
         need("dask", "--dask")
         import distributed
@@ -39,6 +39,7 @@ class Cluster:
     def each(
         self, work: Work[Unit, Result], units: Sequence[Unit], watch: Watch
     ) -> Iterator[Result]:
+        """The result of each unit, in order."""
         given: deque[Any] = deque()
         try:
             for number in range(len(units)):
@@ -52,13 +53,13 @@ class Cluster:
         except self._dask.comm.core.CommClosedError:
             raise Stopped(LOST) from None
         finally:
-            with contextlib.suppress(Exception):  # there may be no cluster any more
+            with contextlib.suppress(Exception):  # the cluster may be gone
                 self._client.cancel(given)
 
     def _result(self, future: Any, watch: Watch) -> Any:
-        from asyncio import run_coroutine_threadsafe  # takes as long to load as all else here
+        from asyncio import run_coroutine_threadsafe  # loading it takes as long as all else here
 
-        # Asked for once: where Dask's own timeout ends, so does what is on its way.
+        # It is asked for once, because Dask's own timeout would also end what is on its way.
         asked = self._client.gather(future, asynchronous=True)
         coming = run_coroutine_threadsafe(asked, self._client.loop.asyncio_loop)
         try:
@@ -82,8 +83,11 @@ class Cluster:
 
 
 def _client(kind: Any, address: str) -> Any:
-    """A client of that cluster. One that finds none is closed here: left to Python's collector
-    it may be closed while another one starts, which then waits for a lock of its own."""
+    """Make a client of that cluster.
+
+    A client that finds no cluster is closed here. If that were left to Python's garbage collector,
+    it might be closed while another one starts, which then waits for a lock of its own.
+    """
     client = kind.__new__(kind)
     try:
         client.__init__(address, timeout=PATIENCE, set_as_default=False)
@@ -95,7 +99,7 @@ def _client(kind: Any, address: str) -> Any:
 
 
 class _Wanted(Watch):
-    """In a worker of a cluster: an end to what nobody waits for any more."""
+    """In a worker of a cluster, a watch that ends work whose result nobody waits for any more."""
 
     def __init__(self) -> None:
         from distributed import get_worker
@@ -105,13 +109,14 @@ class _Wanted(Watch):
         self._key = get_worker().get_current_task()
 
     def tick(self) -> None:
+        """End the work if nobody waits for it."""
         task = self._tasks.get(self._key)
         if task is None or task.state == "cancelled":
             raise Stopped(INTERRUPT)
 
 
 def _at_worker(digest: str, work: Work[Unit, Result], unit: Unit) -> Result:
-    """Do a unit, if it is done here as it would be at home."""
+    """Do a unit, if the worker has the same program as the caller."""
     if digest != solving.digest():
         where = f"{socket.gethostname()}, process {os.getpid()}"
         raise InputError(f"--dask: a worker ({where}) has another topomap")

@@ -1,11 +1,11 @@
-"""Who is there to do the work."""
+"""The crews that do the work."""
 
 from topomap.solver.share import ALONE, Crew
 
 
 def crew(jobs: int = 1, dask: str | None = None) -> Crew:
-    """The workers of the Dask cluster at that address, or so many processes."""
-    # What shares work out is loaded where it is asked for: one process needs none of it.
+    """Make a crew: the workers of the Dask cluster at an address, or so many processes."""
+    # What shares work is loaded only if it is asked for; a single process does not need it.
     if dask is not None:
         from topomap.solver.cluster import Cluster
 

@@ -1,5 +1,7 @@
-"""Which default of the theory, or which part that was asked for, stands in the way of a closed map:
-each alone is taken away, and a closed map is looked for, within a small budget of counted work."""
+"""Which default of the theory, or which part, stands in the way of a closed map.
+
+Each alone is taken away, and a closed map is looked for, within a small budget of counted work.
+"""
 
 from collections import Counter
 from collections.abc import Iterator, Sequence
@@ -13,11 +15,11 @@ from topomap.runtime.watch import Watch
 from topomap.solver.programs import Program, calls
 from topomap.solver.threads import Put
 
-# The budget, for each thing that is taken away: so many conflicts of clingo, and no more pairs of
-# visits that look alike, by which the ground program grows.
+# The budget for each thing that is taken away: the largest number of conflicts of clingo, and the
+# largest number of pairs of visits that look alike, with which the ground program grows.
 CONFLICTS, PAIRS = 2_000, 1_000
 PATH_AXIOM, BOUND = "path_axiom", "bound"
-# What is taken away, as it is called in words, with the option that does so, or that is left out.
+# What is taken away, in words, with the option that does so, or that is left out.
 WORDS = {
     PATH_AXIOM: "the path axiom there is one: --no-path-axiom",
     "boundary": "--boundary there is one",
@@ -29,17 +31,19 @@ WORDS = {
 
 
 def in_the_way(experience: Experience, query: Query, watch: Watch) -> list[str]:
-    """Of a query that has no closed map: what, if it alone is taken away, lets one through. Only
-    what is proved is named; where the budget ends before, nothing is said.
+    """Find what alone stands in the way of a closed map, for a query that has none.
+
+    Only what is proved is named. If the budget ends before, nothing is said.
 
     Parameters:
-        experience, query: what was seen and done, and what was asked for; no more is proved for the
-            query than that it has no closed map.
-        watch: what may end the work, with Stopped.
+        experience: What the agent saw and did.
+        query: What was asked for. Nothing more need be proved about it than that it has no closed
+            map.
+        watch: What may end the work, with Stopped.
 
     Returns:
-        Keys of WORDS, in that order. None of them where views may be wrong, where the paper's rules
-        were asked for, or where too many visits look alike to be grounded in a moment.
+        Keys of WORDS, in that order. There are none if views may be wrong, if the paper's rules
+        were asked for, or if so many visits look alike that grounding would take long.
     """
     seen = experience if query.horizon is None else experience.cut(query.horizon)
     alike = Counter(map(len, seen.views)).values()
@@ -56,7 +60,7 @@ def in_the_way(experience: Experience, query: Query, watch: Watch) -> list[str]:
 
 
 def told(names: Sequence[str]) -> str:
-    """What stands in the way, in one line to read; there is something."""
+    """Say in one line what stands in the way; there must be something."""
     return "; ".join(["no closed map", *(f"without {WORDS[name]}" for name in names)])
 
 
@@ -71,14 +75,16 @@ def _taken_away(query: Query) -> Iterator[tuple[str, Query]]:
 
 
 def _has_map(experience: Experience, query: Query, watch: Watch) -> bool:
-    """Whether a map of a query was found within the budget."""
+    """Tell whether a map of a query is found within the budget."""
     found: list[bool] = []
 
     def take(_: clingo.Model) -> bool:
+        """Note that there is a map."""
         found.append(True)
         return False
 
     def work(program: Program, put: Put) -> None:
+        """Solve the program, and put whether there is a map."""
         solve = program.control.configuration.solve
         solve.solve_limit = f"{CONFLICTS},umax"  # type: ignore[union-attr]
         program.solve((), on_model=take)

@@ -1,6 +1,8 @@
-"""Every map of a query, by clingo, by the search, or by whichever has less work to do. The maps are
-found in one run, or branch by branch of the tree: then each branch is a unit of a journal, and a
-crew may share the branches out."""
+"""All maps of a query, by clingo, by the search, or by whichever has less work to do.
+
+The maps are found in one run, or branch by branch of the tree. In the latter case each branch is a
+unit of a journal, and a crew may share the branches.
+"""
 
 from array import array
 from collections.abc import Generator, Iterator
@@ -38,21 +40,28 @@ def every(
     circumscribe: bool = False,
     limit: int | None = None,
 ) -> Generator[Found, None, None]:
-    """The maps of a query, as they are found.
+    """Find the maps of a query, and give each when it is found.
 
     Parameters:
-        experience, query: what was seen and done, and which maps are asked for.
-        watch: what may end the work; its ``by`` is set to the way that gives the maps.
-        by: one of WAYS.
-        optimal: only the best maps; better and better ones come before those that are proved.
-        journal, crew: with either of them, and if all maps are asked for, the maps are found
-            branch by branch of the tree, unless ``auto`` has found them by the search before that.
-        circumscribe: only the circumscribed maps.
-        limit: how many maps the caller takes at most, not counting one more by which it sees that
-            there are others.
+        experience: What the agent saw and did.
+        query: Which maps are asked for.
+        watch: What may end the work; its ``by`` is set to the way that finds the maps.
+        by: One of WAYS.
+        optimal: Whether only the best maps are wanted. Better and better ones come before those
+            that are proved to be best.
+        journal: A journal of the work. With it, or with a crew, and if all maps are asked for, the
+            maps are found branch by branch of the tree, unless ``auto`` has found them by the
+            search before.
+        crew: A crew that shares the work.
+        circumscribe: Whether only the circumscribed maps are wanted.
+        limit: The largest number of maps that the caller takes, not counting one more that shows
+            that there are others.
+
+    Yields:
+        The maps.
 
     Raises:
-        Stopped: the work was cut short, or ``limit`` maps were found and the search given up.
+        Stopped: The work was cut short, or ``limit`` maps were found and the search was given up.
     """
     journal = journal or Journal()
     watch.by = CLINGO if by == AUTO else by
@@ -70,7 +79,7 @@ def every(
         way = WAYS[by]
         branches, depth = traversal.cubes(experience, query)
         done = 0
-        known: set[Cube] = set()  # the maps of the branch that was cut
+        known: set[Cube] = set()  # the maps of the branch that was cut short short
         with watch.deadline.waiting():
             for value in journal.recorded(len(branches)):
                 watch.tick()
@@ -105,7 +114,7 @@ def _by_what_suits(
     crew: Crew,
     limit: int | None,
 ) -> Iterator[Found]:
-    """All maps of a query, as ``every`` gives them, by the way that has less work to do."""
+    """Find all maps of a query, as ``every`` does, by the way that has less work to do."""
     trial = Trial(experience, query, watch, limit=limit)
     if trial.whole or trial.fault:
         yield from trial.maps
@@ -116,7 +125,8 @@ def _by_what_suits(
         yield from filter(None, trial.rest)
     else:
         some = False
-        watch.found = 0  # a journal or a crew needs the maps branch by branch, and so anew
+        # A journal or a crew needs the maps branch by branch, so they are found anew.
+        watch.found = 0
         try:
             for found in every(experience, query, watch, trial.by, False, journal, crew):
                 some = True
@@ -129,9 +139,14 @@ def _by_what_suits(
 
 
 def proved_or_last(coming: Iterator[Found]) -> Iterator[Found]:
-    """Of maps that come, those that are proved to be what they are said to be; or the last of the
-    others, which is the best until then, if the work is cut before one is proved. Raises Stopped
-    after that."""
+    """Select the maps that are proved to be what they are said to be.
+
+    If the work is cut short before one is proved, the last of the others is given, which is the
+    best one so far.
+
+    Raises:
+        Stopped: The work was cut short; this comes after that map.
+    """
     last, some = None, False
     with Attempt() as attempt:
         for found in coming:
@@ -147,7 +162,11 @@ def proved_or_last(coming: Iterator[Found]) -> Iterator[Found]:
 
 
 def best_maps(experience: Experience, query: Query, watch: Watch) -> tuple[list[Found], str | None]:
-    """The optimal maps, or the best so far, in order; and why they may not be all, if so."""
+    """Find the optimal maps, or those that are best so far, in order.
+
+    Returns:
+        The maps, and why they may not be all, or None.
+    """
     found = []
     with Attempt() as attempt:
         for one in proved_or_last(every(experience, query, watch, optimal=True)):
@@ -158,7 +177,7 @@ def best_maps(experience: Experience, query: Query, watch: Watch) -> tuple[list[
 def _shared(
     crew: Crew, way: Way, experience: Experience, query: Query, watch: Watch, cubes: list[Cube]
 ) -> Iterator[Found | None]:
-    """What a way gives, by a crew."""
+    """Find maps by a way that a crew shares."""
     steps = experience.cut(LARGEST if query.horizon is None else query.horizon).steps
     for numbers in crew.each(partial(_numbers, way, experience, query), cubes, watch):
         dstates = list(zip(numbers[::2], numbers[1::2], strict=True))
@@ -171,8 +190,10 @@ def _shared(
 def _numbers(
     way: Way, experience: Experience, query: Query, cube: Cube, watch: Watch | None
 ) -> "array[int]":
-    """The maps that begin with a cube, as places and gateways in a row: a third of the memory
-    that they take as maps."""
+    """The maps that begin with a cube, as rows of places and gateways.
+
+    This takes a third of the memory that the maps would take.
+    """
     numbers = array("i")
     for found in way(experience, query, watch or Watch(), cubes=[cube]):
         for dstate in found.at if found else ():

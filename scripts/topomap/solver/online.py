@@ -1,14 +1,15 @@
-"""An experience as it happens: after each step how many hypotheses there are, the best maps,
-and what is certain.
+"""An experience as it happens: what is known after each step.
+
+It tells how many hypotheses there are, the best maps, and what is certain.
 
 While few hypotheses live, all of them are kept, each with its map, and a step enters the children
-of each (``search/living.py``): what that costs does not grow with the log. Where there are too many
-(LIVING), clingo takes over (``stepwise.py``), until they have become few again. Both give the same
+of each (``search/living.py``). The cost of this does not grow with the log. If there are too many
+(LIVING), clingo takes over (``stepwise.py``) until they have become few again. Both give the same
 answers.
 
-But clingo's program grows with each step. Where it is too large, too (MOST_ATOMS), only SOME of the
-hypotheses are kept, those with the fewest paths and places: then little is proved, and the answers
-are partial, but a step costs no more than before.
+But clingo's program grows with each step. If it also becomes too large (MOST_ATOMS), only SOME of
+the hypotheses are kept, those with the fewest paths and places. Then little is proved, and the
+answers are partial, but a step costs no more than before.
 """
 
 from collections.abc import Sequence
@@ -25,12 +26,12 @@ from topomap.search.hypothesis import OFTEN
 from topomap.search.living import Living, Told, Tree
 from topomap.solver.stepwise import MAPS, Asked, Stepwise
 
-LIVING = 200_000  # places of all the hypotheses together, each of which is kept with its map
-FEWER = 4  # times fewer than these there are to be, before clingo is asked no longer
-MOST_ATOMS = 30_000  # ground atoms of clingo's program; if it has more, it is not asked any more
-SOME = 20_000  # places of the hypotheses that are kept then
-KEPT, KEPT_STEPS = 5_000, 500  # hypotheses, and steps, that are kept for when steps are taken back
-TOO_MANY = "too many hypotheses"  # why an answer is partial where only some are kept
+LIVING = 200_000  # places of all hypotheses together: up to so many, all are kept with their maps
+FEWER = 4  # clingo is no longer asked when there are so many times fewer
+MOST_ATOMS = 30_000  # ground atoms: if clingo's program has more, it is no longer asked
+SOME = 20_000  # places of the hypotheses that are kept in that case
+KEPT, KEPT_STEPS = 5_000, 500  # hypotheses, and steps, that are kept in case steps are taken back
+TOO_MANY = "too many hypotheses"  # why an answer is partial if only some are kept
 
 __all__ = ["Certain", "LivingMap", "OnlineSolver", "ReadMap", "Status"]
 
@@ -45,7 +46,7 @@ class ReadMap:
 
     @cached_property
     def sizes(self) -> Sizes:
-        """How many places, links and paths it has, its genus, and how many pending gateways."""
+        """The numbers of places, links and paths, the genus, and the number of pending gateways."""
         one = CompactMap(Numbering(self.experience, path_axiom=False), self.at)
         return (
             len(one.places),
@@ -57,11 +58,11 @@ class ReadMap:
 
     @property
     def exceptions(self) -> Sequence[NamedException]:
-        """Its exceptions to consistent boundaries."""
+        """The exceptions to consistent boundaries."""
         return exceptions_of(self.experience, self.at)
 
     def way(self, most: int) -> list[DState]:
-        """The dstates after the last steps, so many at most."""
+        """The dstates after the last steps, at most so many."""
         return [*self.at[-most:]]
 
     def __eq__(self, other: object) -> bool:
@@ -85,7 +86,7 @@ class LivingMap:
         return tuple(divmod(gateway, self.slots) for gateway in self.living.visit.gateways())
 
     def way(self, most: int) -> list[DState]:
-        """The dstates after the last steps, so many at most."""
+        """The dstates after the last steps, at most so many."""
         visit = self.living.visit
         last = visit.gateways(max(0, visit.step + 1 - most))
         return [divmod(gateway, self.slots) for gateway in last]
@@ -99,10 +100,12 @@ class LivingMap:
 
 @dataclass(frozen=True)
 class Status:
-    """What is known after a step. ``exact`` is false if there are more hypotheses than
-    ``hypotheses``; ``none_since`` is the first step after which there is none. ``maps`` are the
-    best maps, and ``best`` the dstates of each of them; ``all_best`` tells whether they are all.
-    ``fault`` is why something is missing."""
+    """What is known after a step.
+
+    ``exact`` is false if there are more hypotheses than ``hypotheses``. ``none_since`` is the first
+    step after which there is none. ``maps`` are the best maps, and ``best`` has the dstates of
+    each; ``all_best`` tells whether they are all. ``fault`` is why something is missing.
+    """
 
     step: int
     hypotheses: int | None = None
@@ -125,7 +128,7 @@ EVERY = Asked()  # all hypotheses
 
 
 class OnlineSolver:
-    """An exploration that goes on, from its start; steps can be taken back."""
+    """An exploration that goes on from its start; steps can be taken back."""
 
     def __init__(
         self,
@@ -135,9 +138,11 @@ class OnlineSolver:
         living: int = LIVING,
         most_atoms: int = MOST_ATOMS,
     ):
-        """Begin where the first view was seen. If the hypotheses have more than ``living`` places,
-        clingo is asked (from the start, if that is 0), until its program has more than
-        ``most_atoms`` atoms."""
+        """Begin at the start, where the first view was seen.
+
+        If the hypotheses have more than ``living`` places, clingo is asked (from the start, if that
+        is 0), until its program has more than ``most_atoms`` atoms.
+        """
         self.told = Told(slots, first, asked.drift, asked.stretch, asked.tolerance)
         self.most, self._living, self._most_atoms = asked.most, living, most_atoms
         self._asked = asked
@@ -151,11 +156,12 @@ class OnlineSolver:
         self._begin()
 
     def _begin(self) -> None:
-        """Stand at the start, as far as the search goes."""
+        """Put the search at the start."""
         self._none: int | None = None
         self._level = [self._tree.root()]
-        self._done = 0  # the step after which these are the hypotheses
-        self._whole = 0, self._level  # the last step of which all hypotheses were kept
+        self._done = 0  # the step to which the hypotheses of ``_level`` belong
+        # The last step of which all hypotheses were kept, and these, and these.
+        self._whole = 0, self._level
         self._kept = {0: self._level}
         self._many_kept = 1
         self._certainty.step(self._level, False)
@@ -169,7 +175,7 @@ class OnlineSolver:
 
     @property
     def rules(self) -> int:
-        """The ground rules so far; 0 if clingo was not asked."""
+        """The number of ground rules so far; 0 if clingo was not asked."""
         return 0 if self._rules is None else self._rules.rules
 
     @property
@@ -178,13 +184,16 @@ class OnlineSolver:
         return self._searching
 
     def step(self, step: Step) -> None:
-        """Go a step on. The caller has seen to it that the turn leads to a gateway, and the marker
-        is not out twice."""
+        """Go a step on.
+
+        The caller has checked that the turn leads to a gateway, and that the marker is not put down
+        twice.
+        """
         self.told.add(step)
         self._experience = None
 
     def undo(self, steps: int = 1) -> None:
-        """Take the last steps back; there are as many."""
+        """Take the last steps back; there must be as many."""
         last = self.told.last - steps
         self.told.cut(last)
         self._experience = None
@@ -194,7 +203,7 @@ class OnlineSolver:
             self._none = None
         if self._some and self._large is not None and last < self._large:
             self._some, self._searching, self._large = False, self._living > 0, None
-            self._done = last + 1  # and so they are found again
+            self._done = last + 1  # so they are found again
         if last >= self._done:
             return
         for step in [step for step in self._kept if step > last]:
@@ -206,14 +215,14 @@ class OnlineSolver:
                 self._whole = last, self._level
         elif self._some:
             self._done, self._level = self._whole
-        else:  # what they were is found again, when it is asked for
+        else:  # they are found again when they are asked for
             origin = self._certainty.origin
             self._certainty = Certainty(self.told)
             self._certainty.origin = origin
             self._begin()
 
     def status(self, watch: Watch) -> Status:
-        """What is known now; at the time limit, what is known until then."""
+        """Tell what is known now; at the time limit, what is known so far."""
         known = Status(self.told.last)
         with Attempt() as attempt:
             rules = self._program(watch)
@@ -232,8 +241,12 @@ class OnlineSolver:
         return replace(known, fault=attempt.fault)
 
     def count(self, watch: Watch) -> tuple[int, bool]:
-        """How many hypotheses there are, and true; or a number that they are more than (-1 if
-        none was found as yet), and false."""
+        """Count the hypotheses.
+
+        Returns:
+            Their number and True; or False and a number that they exceed (-1 if none has been
+            found).
+        """
         rules = self._program(watch)
         if rules is not None:
             return rules.count(watch)
@@ -275,7 +288,7 @@ class OnlineSolver:
                 self._none = self._done + 1
 
     def _keep(self) -> None:
-        """Keep the hypotheses after this step for when later ones are taken back."""
+        """Keep the hypotheses after this step in case later steps are taken back."""
         kept = self._kept
         kept[self._done] = self._level
         self._many_kept += len(self._level)
@@ -283,7 +296,7 @@ class OnlineSolver:
             self._many_kept -= len(kept.pop(next(iter(kept))))
 
     def _status(self, watch: Watch) -> Status:
-        """The status, where the hypotheses are at hand."""
+        """The status, if all hypotheses are known."""
         step = self.told.last
         if self._none is not None:
             return Status(step, 0, True, self._none, all_best=True, certain=Certain())
@@ -296,7 +309,7 @@ class OnlineSolver:
         return replace(known, fault=attempt.fault)
 
     def _partial(self, watch: Watch) -> Status:
-        """The status, where only some of the hypotheses are at hand."""
+        """The status, if only some of the hypotheses are kept."""
         known = Status(self.told.last, fault=TOO_MANY)
         if not self._level:
             return known
@@ -306,7 +319,7 @@ class OnlineSolver:
         return replace(known, hypotheses=number, exact=exact, kind=UNPROVED, cost=cost, maps=maps)
 
     def _best(self, watch: Watch) -> tuple[str, tuple[int, ...], list[Living]]:
-        """The best maps: of what kind they are, and their cost."""
+        """The best maps: their kind, and their cost."""
         closed = [one for one in self._level if one.form.closed]
         costs: dict[tuple[int, int], list[Living]] = {}
         for one in closed or self._level:
@@ -322,13 +335,15 @@ class OnlineSolver:
                     least, best = cost, []
                 if cost == least:
                     best.append(one)
-            if least[0] == 0:  # and others with none have more paths, or places
+            if least[0] == 0:  # other maps without exceptions have more paths or places
                 break
         return "optimal" if closed else "best so far", least, best
 
     def _program(self, watch: Watch) -> Stepwise | None:
-        """The program, where clingo is to be asked; it knows all steps. None, if the hypotheses
-        after the last step are at hand, or some of them."""
+        """The program, if clingo is to be asked; it knows all steps.
+
+        It is None if the hypotheses after the last step are known, or some of them.
+        """
         self._advance(watch)
         told = self.told
         if self._searching or self._some:
@@ -348,7 +363,7 @@ class OnlineSolver:
         return None
 
     def _return(self, rules: Stepwise, watch: Watch) -> None:
-        """Go on by search, if clingo's hypotheses have become few."""
+        """Go back to the search if clingo's hypotheses have become few."""
         found, slots = rules.level, self.told.slots
         if found is None:
             return
@@ -356,7 +371,7 @@ class OnlineSolver:
         if places * FEWER > self._living:
             return
         level: list[Living] = []
-        way = [self._tree.root()]  # to the hypothesis before
+        way = [self._tree.root()]  # the way to the hypothesis before
         before: tuple[int, ...] = (0,)
         for number, at in enumerate(sorted(found)):
             if number % OFTEN == 0:
@@ -376,8 +391,10 @@ class OnlineSolver:
 
 
 def _simplest(level: Sequence[Living]) -> list[Living]:
-    """Those hypotheses with the fewest paths, then the fewest places, that have SOME places at
-    most, in their order."""
+    """The hypotheses with the fewest paths, then the fewest places, in their order.
+
+    They have at most SOME places together.
+    """
     order = sorted(range(len(level)), key=lambda number: level[number].form.cost)
     places = 0
     chosen: list[int] = []

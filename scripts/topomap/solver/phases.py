@@ -1,26 +1,25 @@
-"""Large maps in phases: what is certain is found by small programs first, so that the whole
-one grounds over what is left.
+"""Large maps in phases: small programs find what is certain, so that less is left to ground.
 
-All that is found, but for ``rare``, holds in every map that is asked for, so the answers stay
-the same: each program asks for less than they must have. (Of the marker those know nothing that
-do not load the theory.) ``encodings/phases/`` has the programs:
+All that is found, except what is ``rare``, holds in every map that is asked for, so that the
+answers stay the same: each program demands less than the maps must fulfil. (Programs that do not
+load the theory do not consider the marker.) These programs are in ``encodings/phases/``:
 
-1. ``visits.lp``: which visits can be of one place, by pairs; settled while grounding.
+1. ``visits.lp``: which visits can be of one place, by pairs; this is settled while grounding.
 2. for closed maps with at most so many places that need not be perpendicular: the theory without
    planarity, but with ``ends.lp``: at which gateways a visit can be in any such map (brave
    consequences).
 
-For large closed and perpendicular maps, where the counting argument of ``runs.lp`` applies:
+For large closed and perpendicular maps, if the counting argument of ``runs.lp`` applies:
 
-3. ``runs.lp``: which runs never cross and never lie on one path; a call for each pair.
-4. the theory without planarity: which visits are the first of their place; a call for each.
-5. if the map is to be planar, the theory with planarity, on longer and longer beginnings of
+3. ``runs.lp``: which runs never cross and never lie on one path, with one call for each pair.
+4. the theory without planarity: which visits are the first of their place, with one call for each.
+5. if the map must be planar, the theory with planarity, on longer and longer beginnings of
    the exploration: brave consequences again.
 
-And where it does not apply, ``lines.lp``: which visits are of one place in any map (brave
-consequences). It has few rules, and clasp is quick on it. If the map is to be planar, clauses
-of ``plane.py`` join them as they are needed. If this is not settled in time, what was seen in
-no map yet is rare: the maps without it are looked for first.
+If it does not apply, ``lines.lp``: which visits are of one place in any map (brave consequences).
+It has few rules, and clasp is quick on it. If the map must be planar, clauses of ``plane.py`` are
+added as they are needed. If this is not settled in time, what was seen in no map so far is rare:
+the maps without it are looked for first.
 """
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -38,21 +37,24 @@ if TYPE_CHECKING:
     from topomap.model.query import Query
 
 SQUARE = {"closed", "perpendicular"}
-LEAST = 150  # pairs of visits that can be of one place: what has fewer is as soon done in one call
-TRY = 20  # conflicts for a question whose answer may be left open
-IN_VAIN = 50  # such questions in a row: there is no more to be found
+LEAST = 150  # pairs of visits that can be of one place: with fewer, one call is as quick
+TRY = 20  # conflicts for a question that may be left open
+IN_VAIN = 50  # after so many questions in a row without an answer, no further one is asked
 TRY_BOUNDED = 200_000  # conflicts for all maps with a bound
 TRY_HARD = 200_000  # conflicts for one beginning, or for all lines
 BRAVE = ("0", "--enum-mode=brave")
-STRIDE = 6  # steps, at least, from one beginning to the next
+STRIDE = 6  # the least number of steps from one beginning to the next
 
-# Called often, with the control that is solved next; raises what ends the work.
+# A function that is often called with the control that is solved next; it may raise an error to
+# end the work.
 Heed = Callable[[clingo.Control], None]
 
 
 def serve(experience: Experience, query: "Query") -> bool:
-    """Whether there are phases for such a query. The phases rest on views that are
-    right and exact, and on opposite gateways being on one path."""
+    """Tell whether there are phases for such a query.
+
+    The phases need views that are right and exact, and opposite gateways that are on one path.
+    """
     if experience.parted or experience.tolerance or experience.straight:
         return False
     if "no_path_axiom" in query.parts:
@@ -69,15 +71,20 @@ def _square(experience: Experience, query: "Query") -> bool:
 
 
 def _large(experience: Experience, query: "Query") -> bool:
-    """Whether the ground program is large. It grows with the pairs of visits that can be of one
-    place (of very many visits, these are not counted)."""
+    """Tell whether the ground program is large.
+
+    It grows with the pairs of visits that can be of one place. (For very many visits these are not
+    counted.)
+    """
     pairs = future_of(experience if query.horizon is None else experience.cut(query.horizon)).pairs
     return pairs is None or pairs >= LEAST
 
 
 def program(experience: Experience, query: "Query") -> tuple[list[str], list[str]]:
-    """The files and the options with which clingo solves what the phases leave of a query,
-    besides its parts."""
+    """The files and the options with which clingo solves what the phases leave of a query.
+
+    The parts of the query are not among the files.
+    """
     if _bounded(experience, query) and not (query.optimizes or "perpendicular" in query.parts):
         return ["phases/topomap", "phases/earlier"], ["--heuristic=Domain"]
     return ["phases/topomap"], []
@@ -86,11 +93,11 @@ def program(experience: Experience, query: "Query") -> tuple[list[str], list[str
 def found(
     experience: Experience, query: "Query", folder: Path, heed: Heed, say: Callable[[str], None]
 ) -> str:
-    """Facts for ``phases/topomap.lp`` that hold in every map which the query asks for.
+    """Find facts for ``phases/topomap.lp`` that hold in every map for which the query asks.
 
-    ``folder`` has the encodings; ``heed`` is called between two calls of clingo. The
-    controls that it is given may be interrupted; what is found is then less, and as true.
-    ``say`` is told what is done.
+    ``folder`` has the encodings. ``heed`` is called between two calls of clingo. The controls that
+    it gets may be interrupted; then less is found, but it is true. ``say`` is told what is being
+    done.
     """
     bounded, square = _bounded(experience, query), _square(experience, query)
     if query.horizon is not None:
@@ -118,7 +125,7 @@ def found(
 class _Phases:
     def __init__(self, facts: str, folder: Path, heed: Heed, constants: Sequence[str] = ()):
         self._facts, self._folder, self._heed = facts, folder, heed
-        self._constants = constants  # options of clingo
+        self._constants = constants  # as options of clingo
         self._pairs: list[Symbol] = []  # comparable/3 and iff/6
         self._found: list[Symbol] = []
 
@@ -138,7 +145,7 @@ class _Phases:
         return control
 
     def visits(self) -> bool:
-        """Whether ``runs.lp`` has a use."""
+        """Find which visits can be of one place, and tell whether ``runs.lp`` can be used."""
         control = self._grounded("phases/visits")
         shown: Sequence[Symbol] = []
         with control.solve(yield_=True) as models:
@@ -149,6 +156,7 @@ class _Phases:
         return few in shown
 
     def runs(self) -> None:
+        """Find which runs never cross and never lie on one path."""
         control = self._grounded("phases/runs")
         atoms = control.symbolic_atoms
         through = sorted(atom.symbol.arguments[0] for atom in atoms.by_signature("passes_four", 1))
@@ -158,6 +166,7 @@ class _Phases:
                 self._know("never", *asked.arguments, Number(number))
 
     def new(self) -> None:
+        """Find which visits are the first of their place."""
         control = self._grounded("phases/topomap", "closed", "perpendicular")
         asked = [atom.symbol for atom in control.symbolic_atoms.by_signature("new", 1)]
         for old in self._refuted(control, asked):
@@ -168,13 +177,16 @@ class _Phases:
     def _refuted(
         self, control: clingo.Control, asked: Sequence[Symbol], value: bool = True
     ) -> Iterator[Symbol]:
-        """Those atoms which have that value in no answer, each asked in a short call; it ends
-        when there was no such atom for long."""
-        seen: set[Symbol] = set()  # they have it in some answer
+        """Find the atoms that have that value in no answer, each by a short call.
+
+        It ends when there has been no such atom for long.
+        """
+        seen: set[Symbol] = set()  # atoms that have the value in some answer
         vain = 0
         _limit(control, TRY)
 
         def note(model: clingo.Model) -> None:
+            """Note the atoms that have the value in an answer."""
             shown = set(model.symbols(atoms=True))
             seen.update(atom for atom in asked if (atom in shown) == value)
 
@@ -194,19 +206,24 @@ class _Phases:
         self._found.append(Function(name, arguments))
 
     def bounded(self, places: int) -> None:
+        """Find the gateways of visits in maps with a bound."""
         files = "closed", "bound", "phases/ends"
         self._possible(TRY_BOUNDED, files, "--eq=0", "-c", f"places={places}")
 
     def beginnings(self, experience: Experience) -> None:
+        """Find the gateways of visits in planar maps of longer and longer beginnings."""
         new = {found.arguments[0].number for found in self._found if found.name == "new"}
         start = next((step for step in range(experience.steps) if step not in new), 0)
         for end in _ends(experience, start):
             if not self._possible(TRY_HARD, ("perpendicular", "planar"), "-c", f"horizon={end}"):
-                return  # later ones are larger
+                return  # the later ones are larger
 
     def _possible(self, conflicts: int, files: Iterable[str], *options: str) -> bool:
-        """Rule out the dstates that are in no answer of the theory with these parts; whether
-        that was settled within so many conflicts."""
+        """Exclude the dstates that are in no answer of the theory with these parts.
+
+        Returns:
+            Whether that was settled within so many conflicts.
+        """
         control = self._grounded("phases/topomap", *files, arguments=[*BRAVE, *options])
         unseen, settled = self._unseen(control, conflicts, ("at", 3))
         if settled:
@@ -215,10 +232,12 @@ class _Phases:
         return settled
 
     def lines(self, planarity: Planarity | None = None) -> None:
-        # With another configuration it may be long before there is a first map at all.
+        # With another configuration it may take long until there is a first map.
+        """Find which visits are of one place, by ``lines.lp``."""
         options = [*BRAVE, "--configuration=handy"]
         if planarity:
-            options.append("--sat-prepro=no")  # it takes long, and the search then does not
+            # Preprocessing takes long here, but the search is quick.
+            options.append("--sat-prepro=no")
         control = self._grounded("phases/lines", arguments=options)
         if planarity:
             control.register_propagator(planarity)
@@ -234,8 +253,11 @@ class _Phases:
     def _unseen(
         self, control: clingo.Control, conflicts: int, *asked: tuple[str, int]
     ) -> tuple[list[Symbol], bool]:
-        """The atoms of these predicates that are in no answer, so far as answers were found
-        within so many conflicts; and whether all were. If none was, there is nothing to tell."""
+        """Find the atoms of these predicates that were in no answer within so many conflicts.
+
+        Returns:
+            These atoms, and whether all answers were found. If none was found, there are no atoms.
+        """
         atoms = control.symbolic_atoms
         unseen = {atom.symbol for name in asked for atom in atoms.by_signature(*name)}
         _limit(control, conflicts)
@@ -252,7 +274,7 @@ def _limit(control: clingo.Control, conflicts: int) -> None:
 
 
 def _ends(experience: Experience, last: int) -> Iterator[int]:
-    """Steps after this one, some way apart, and the last one."""
+    """Some later steps, some distance apart, and the last step."""
     for step in range(experience.steps):
         if step >= last + STRIDE:
             yield step

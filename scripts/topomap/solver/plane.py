@@ -1,16 +1,16 @@
-"""Planarity for ``lines.lp``, clause by clause, as the search breaks it.
+"""Planarity for ``lines.lp``, as clauses that are added when the search violates it.
 
-In a planar map two closed walks cross an even number of times. Where the map that the search
-has so far is not planar, this looks for two short circuits of it that cross an odd number of
-times, and forbids what they rest on:
+In a planar map two closed walks cross an even number of times. If the current map of the search is
+not planar, this looks for two short circuits of it that cross an odd number of times, and forbids
+the literals that make them cross so:
 
-- a circuit goes by links, so by steps; where it changes from one step to another, the two are
+- a circuit goes by links, and so by steps; where it changes from one step to another, the two are
   at one place: ``one_place(P,T,S)`` holds;
 - where the two circuits cross, so do the visits that they share there;
-- they cross nowhere else: no ``one_place(P,T,S)`` holds that would make them.
+- they cross nowhere else: no ``one_place(P,T,S)`` holds that would make them cross.
 
-Each such clause holds in every planar map, whatever else is seen. Not each map that is not
-planar is refused, for only short circuits are looked at: what is left, ``planar.lp`` refuses.
+Each such clause holds in every planar map, whatever else is seen. Not every map that is not planar
+is refused, because only short circuits are considered; ``planar.lp`` refuses the others.
 """
 
 from collections import defaultdict, deque
@@ -19,26 +19,26 @@ from itertools import combinations
 
 import clingo
 
-EVERY = 20  # fixpoints of the search, from one look at its map to the next
-FAR = 7  # links: how far from a place to look for circuits through it
-CIRCUITS = 80  # the shortest ones are compared
-CLAUSES = 10  # at most, from one look
+EVERY = 20  # fixpoints of the search between two looks at its map
+FAR = 7  # links: the largest distance from a place of the circuits through it
+CIRCUITS = 80  # the number of circuits that are compared, the shortest ones
+CLAUSES = 10  # the largest number from one look
 
 Dart = tuple[int, int]  # a place, known by its first visit, and a gateway of it
-Link = tuple[Dart, Dart]  # in one direction
-Step = tuple[int, bool]  # a step, and whether it is gone against its direction
+Link = tuple[Dart, Dart]  # a link in one direction
+Step = tuple[int, bool]  # a step, and whether it is taken backwards
 
 
 class Planarity(clingo.Propagator):
-    """Refuses maps that are not planar."""
+    """A propagator that refuses maps that are not planar."""
 
     def __init__(self, slots: int):
         self._slots = slots
-        self._move: list[int] = [0]  # by steps
-        # By two visits: the slots by which one can be turned against the other, with the
+        self._move: list[int] = [0]  # for each step
+        # For two visits: the slots by which one can be turned against the other, with the
         # literals that say so.
         self._same: dict[tuple[int, int], dict[int, int]] = defaultdict(dict)
-        self._due: list[list[int]] = []  # clauses, as what they forbid
+        self._due: list[list[int]] = []  # clauses, as the literals that they forbid
         self._fixpoints = 0
 
     def init(self, init: clingo.PropagateInit) -> None:
@@ -55,20 +55,20 @@ class Planarity(clingo.Propagator):
         init.check_mode = clingo.PropagatorCheckMode.Both
 
     def check(self, control: clingo.PropagateControl) -> None:
-        """Look at the map, but not at each fixpoint of the search."""
+        """Examine the map, but not at each fixpoint of the search."""
         assignment = control.assignment
         self._fixpoints += 1
         if not self._add(control):
             return
         if assignment.is_total or self._fixpoints % EVERY == 0:
             for forbidden in _Look(self._slots, self._move, self._same, assignment).forbidden():
-                # With one literal more open, the clause would do nothing as yet.
+                # If another literal is open, the clause has no effect yet.
                 if sum(not assignment.is_true(literal) for literal in forbidden) <= 1:
                     self._due.append(forbidden)
             self._add(control)
 
     def _add(self, control: clingo.PropagateControl) -> bool:
-        """Add the clauses that are due; whether the search can go on as it was."""
+        """Add the clauses that are due, and tell whether the search can go on unchanged."""
         due = bool(self._due)
         while self._due:
             if not control.add_nogood(self._due.pop()):
@@ -88,8 +88,8 @@ class _Look:
     ):
         self._slots, self._move, self._same = slots, move, same
         self._assignment = assignment
-        self._place: list[int] = []  # by visits: the first visit of its place
-        self._gate: list[int] = []  # and the gateway stood at, as seen by the first visit
+        self._place: list[int] = []  # for each visit: the first visit of its place
+        self._gate: list[int] = []  # and its gateway, as seen by the first visit
         firsts: list[int] = []
         for visit in range(len(move)):
             place, gate = self._known(visit, firsts)
@@ -117,7 +117,7 @@ class _Look:
         return visit, 0
 
     def forbidden(self) -> list[list[int]]:
-        """Literals that do not hold together, longest list first; none if the map is planar."""
+        """Sets of literals that exclude each other, the longest first; none for a planar map."""
         if self._planar():
             return []
         circuits = sorted(self._circuits(), key=len)[:CIRCUITS]
@@ -132,7 +132,7 @@ class _Look:
         return sorted(found, key=len, reverse=True)
 
     def _planar(self) -> bool:
-        """Euler's formula; the map is connected."""
+        """Tell whether the map is planar by Euler's formula, as it is connected."""
         faces, seen = 0, set()
         for start in self._links:
             faces += start not in seen
@@ -147,8 +147,10 @@ class _Look:
         return len(self._from) - len(self._links) // 2 + faces == 2
 
     def _circuits(self) -> list[list[Link]]:
-        """Short circuits: for each place, two shortest ways from it, and a link between their
-        ends; each circuit once."""
+        """Find short circuits, each once.
+
+        Each consists of two shortest ways from a place, and a link between their ends.
+        """
         found: dict[frozenset[Dart], list[Link]] = {}
         for root in self._from:
             way: dict[int, list[Link]] = {root: []}
@@ -171,13 +173,13 @@ class _Look:
     ) -> None:
         back = link[1], link[0]
         if link in other[-1:] or back in way[-1:] or (way and other and way[0] == other[0]):
-            return  # a link of the ways themselves, or a circuit that is not through the root
+            return  # a link of the two ways, or a circuit that does not pass the root
         circuit = [*way, link, *((end, start) for start, end in reversed(other))]
         found.setdefault(frozenset(dart for link in circuit for dart in link), circuit)
 
     @staticmethod
     def _corners(circuit: Sequence[Link]) -> dict[int, tuple[int, int]]:
-        """By the places of a circuit: the gateways by which it comes and goes."""
+        """The gateways by which a circuit comes and goes, by place."""
         return {
             into[0]: (into[1], out[1])
             for (_, into), (out, _) in zip(circuit, [*circuit[1:], circuit[0]], strict=True)
@@ -187,14 +189,16 @@ class _Look:
         return sum(self._cross(*one[p], *two[p]) for p in one.keys() & two.keys()) % 2 == 1
 
     def _cross(self, come: int, go: int, enter: int, leave: int) -> bool:
-        """Whether a walk crosses, at one place, another one that comes and goes there, if it
-        keeps to the right of what links they share."""
+        """Tell whether a walk crosses, at one place, another one that comes and goes there.
+
+        It keeps to the right of the links that they share.
+        """
         turn = (go - come) % self._slots
         right = 0 < (enter - come) % self._slots <= turn
         return turn != 0 and right != ((leave - come) % self._slots < turn)
 
     def _why(self, one: Sequence[Link], two: Sequence[Link]) -> list[int]:
-        """The literals on which it rests that these circuits cross an odd number of times."""
+        """The literals that make these circuits cross an odd number of times."""
         literals: set[int] = set()
         seconds = list(self._passed(two, literals))
         for visits, come, go in self._passed(one, literals):
@@ -213,7 +217,7 @@ class _Look:
         visit, other = pair
         crossing = []
         for slot, literal in self._same.get(pair, {}).items():
-            # The gateways are numbered as each one's place is now; how, if this holds?
+            # Gateways are numbered by their current places; the literal tells how they correspond.
             turn = slot - self._gate[other] + self._gate[visit]
             if self._cross(*one, *(gate + turn for gate in two)):
                 crossing.append(literal)
@@ -223,8 +227,14 @@ class _Look:
     def _passed(
         self, circuit: Sequence[Link], literals: set[int]
     ) -> Iterator[tuple[set[int], int, int]]:
-        """Go round, by steps: the visits where one step comes and the next goes, which are of
-        one place, as the literals have it; and the gateways."""
+        """Go round a circuit by steps.
+
+        Where one step ends and the next begins, the two visits are of one place, which the literals
+        say.
+
+        Returns:
+            These visits, with the gateways.
+        """
         steps = self._walk(circuit)
         ends = zip(circuit, steps, [*circuit[1:], circuit[0]], [*steps[1:], steps[0]], strict=True)
         for (_, into), (came, back), (out, _), (goes, against) in ends:
@@ -235,7 +245,7 @@ class _Look:
             yield {come, go}, into[1], out[1]
 
     def _walk(self, circuit: Sequence[Link]) -> list[Step]:
-        """For each link a step that was along it, if possible one that went on from the last."""
+        """For each link, choose a step along it, if possible one that continues the last step."""
         steps: list[Step] = []
         for link in circuit:
             along = self._steps[link]

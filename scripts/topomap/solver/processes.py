@@ -1,8 +1,8 @@
 """Processes of this machine that share work.
 
-A worker is a Python of its own, which is told by a pipe where it finds modules, and then what to
-do. multiprocessing would have it run the script of the user once more, and would start a process
-of its own besides, which lets Ctrl-C through.
+A worker is a Python process of its own. It is told through a pipe where it finds modules, and then
+what to do. multiprocessing would run the script of the user once more, and would start a process of
+its own besides, which lets Ctrl-C through.
 """
 
 import contextlib
@@ -21,7 +21,7 @@ from typing import Any
 from topomap.runtime.watch import MEMORY, Stopped, Watch
 from topomap.solver.share import AHEAD, LOST, Result, Unit, Work
 
-TRIES = 3  # workers that a unit may cost
+TRIES = 3  # a unit is given up after so many lost workers
 WORKER = """\
 import sys
 from multiprocessing.connection import Connection
@@ -33,7 +33,7 @@ serve(pipe)
 
 
 class Processes:
-    """Processes of this machine. They end with this one, however it ends."""
+    """Processes of this machine, which end with this process, however it ends."""
 
     def __init__(self, jobs: int):
         self._jobs = jobs
@@ -42,6 +42,7 @@ class Processes:
     def each(
         self, work: Work[Unit, Result], units: Sequence[Unit], watch: Watch
     ) -> Iterator[Result]:
+        """The result of each unit, in order."""
         while len(self._workers) < min(self._jobs, len(units)):
             self._hire()
         todo = deque(range(len(units)))
@@ -54,7 +55,8 @@ class Processes:
                     for pipe in [pipe for pipe in self._workers if pipe not in busy]:
                         if todo and todo[0] < number + AHEAD * self._jobs:
                             busy[pipe] = todo.popleft()
-                            with contextlib.suppress(OSError):  # it is lost, as is seen below
+                            # The worker is lost, which is noticed below.
+                            with contextlib.suppress(OSError):
                                 pipe.send((work, units[busy[pipe]]))
                     ready = set(wait(list(busy), timeout=0.1))
                     for pipe in [pipe for pipe in busy if pipe in ready]:
@@ -79,9 +81,9 @@ class Processes:
 
     def _hire(self) -> None:
         ours, theirs = Pipe()
-        # -P: what lies in this folder is no module, unless it is one for this process, too.
+        # -P: the files in this folder are no modules, unless they are for this process, too.
         call = [get_executable(), "-P", "-c", WORKER, str(theirs.fileno())]
-        # Ctrl-C in the terminal is for this process alone, from the worker's first moment.
+        # From the beginning of the worker, Ctrl-C in the terminal reaches this process alone.
         before = signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGINT])
         try:
             process = subprocess.Popen(call, stdin=subprocess.PIPE, pass_fds=[theirs.fileno()])
@@ -89,9 +91,10 @@ class Processes:
             raise Stopped(MEMORY) from None
         finally:
             signal.pthread_sigmask(signal.SIG_SETMASK, before)
-            theirs.close()  # so that the pipe is at its end when the worker is
+            theirs.close()  # so that the pipe ends when the worker ends
         self._workers[ours] = process
-        with contextlib.suppress(OSError):  # it is lost, as is seen when it is to work
+        # The worker is lost, which is noticed when it should work.
+        with contextlib.suppress(OSError):
             ours.send([folder for folder in sys.path if isinstance(folder, str)])
 
     def _fire(self, pipe: Connection) -> None:
@@ -109,7 +112,7 @@ class Processes:
 
 
 def serve(pipe: Connection) -> None:
-    """In a worker: do what comes, until there is nobody to do it for."""
+    """Work as a worker: do what comes, until nobody needs it any more."""
     signal.signal(signal.SIGTERM, signal.SIG_DFL)
     threading.Thread(target=_end_with_the_other, daemon=True).start()
     with contextlib.suppress(EOFError, OSError):
@@ -125,7 +128,9 @@ def serve(pipe: Connection) -> None:
 
 
 def _end_with_the_other() -> None:
-    """End this worker, whatever it does, when the process is gone that holds the other end of its
-    standard input: nothing is ever written there."""
+    """End this worker, whatever it does, when the process that began it is gone.
+
+    That process holds the other end of standard input, to which nothing is ever written.
+    """
     os.read(0, 1)
     os._exit(0)

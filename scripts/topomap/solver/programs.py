@@ -1,4 +1,4 @@
-"""clingo's programs: made of the encodings, grounded and solved in a thread of their own."""
+"""The programs of clingo: they are made of the encodings, then grounded and solved in a thread."""
 
 import threading
 from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -25,7 +25,10 @@ Answer = TypeVar("Answer")
 def control(
     query: Query, facts: str, entry: Sequence[str] = ("topomap",), options: Sequence[str] = ()
 ) -> clingo.Control:
-    """clingo with the encodings, the entry files first, and the facts, not yet grounded."""
+    """Make a control of clingo with the encodings, the entry files first, and the facts.
+
+    It is not yet grounded.
+    """
     arguments = ["0", *options]
     if query.optimizes:
         arguments.append("--opt-mode=optN")
@@ -49,7 +52,7 @@ def control(
 
 
 def beyond(experience: Experience) -> list[str]:
-    """The files of encodings/paper/ for what is told of which the paper does not know."""
+    """The files of encodings/paper/ for what is told that the paper does not consider."""
     needed = {
         "marker": experience.drops or experience.things,
         "logs": experience.parted,
@@ -64,7 +67,7 @@ def beyond(experience: Experience) -> list[str]:
 
 
 class Program:
-    """A query's program, with more facts, grounded when it is first solved."""
+    """The program of a query with more facts, which is grounded when it is first solved."""
 
     def __init__(self, experience: Experience, query: Query, facts: str = ""):
         self.asked = experience, query
@@ -84,8 +87,8 @@ class Program:
         told = experience.facts() + facts + experience.assumptions("explain" in query.parts)
         self.control = control(query, told, entry, options)
         self._grounded = self._interrupted = False
-        self.changed = False  # whether rules were added by which it has fewer answers
-        self._solved = self.control  # now or next
+        self.changed = False  # whether rules were added that exclude answers
+        self._solved = self.control  # the control that is being solved, or is next
         self.say: Callable[[str], None] = lambda _: None
 
     def solve(
@@ -94,7 +97,7 @@ class Program:
         more: Sequence[tuple[clingo.Symbol, bool]] = (),
         on_model: Callable[[clingo.Model], bool] | None = None,
     ) -> clingo.SolveResult:
-        """Solve it, with the hypotheses that begin with a cube as the only ones."""
+        """Solve the program for the hypotheses that begin with a cube."""
         if not self._grounded:
             if self._phased:
                 facts = phases.found(*self.asked, ENCODINGS, self._heed, self.say)
@@ -114,18 +117,20 @@ class Program:
             raise Stopped(INTERRUPT)
 
     def interrupt(self) -> None:
-        """End the call of another thread, as soon as it has grounded."""
+        """End the call of another thread as soon as it has grounded."""
         self._interrupted = True
         self._solved.interrupt()
 
     def keep(self) -> None:
-        """Have it at hand, with what it has learnt, if this thread asks for it again."""
+        """Keep the program, with what it has learnt, for the next call of this thread."""
         if not (self.asked[1].optimizes or self.changed):
             _last.program = self
 
     def models(self) -> tuple[int, tuple[float, ...]]:
-        """How many answers the last call had; if the query minimises, best ones, and what
-        they cost."""
+        """The number of answers of the last call.
+
+        If the query minimises, it is the number of best answers, and their cost.
+        """
         summary = self.control.statistics["summary"]
         if not self.asked[1].optimizes:
             return int(summary["models"]["enumerated"]), ()
@@ -142,7 +147,7 @@ _last = _Last()
 
 
 def forget() -> None:
-    """Let go of the program that this thread has kept."""
+    """Free the program that this thread has kept."""
     _last.program = None
 
 
@@ -151,7 +156,7 @@ def program_of(experience: Experience, query: Query, facts: str = "") -> Program
     prepare()
     program, _last.program = _last.program, None
     if program is None or (*program.asked, program.facts) != (experience, query, facts):
-        program = None  # its memory is free before there is another
+        program = None  # its memory is freed before the next one is made
         try:
             program = Program(experience, query, facts)
         except MemoryError:
@@ -166,8 +171,11 @@ def calls(
     watch: Watch,
     work: Callable[[Program, Put], None],
 ) -> Iterator[Any]:
-    """What ``work`` puts, which solves a query's program with these facts as often as it likes.
-    Raises Stopped at the time limit, or out of memory."""
+    """Give what ``work`` puts, which may solve the program of a query several times.
+
+    Raises:
+        Stopped: The time limit has passed, or memory ran out.
+    """
     program = program_of(experience, query, facts)
     return in_thread(program, watch, partial(work, program))
 
@@ -179,15 +187,22 @@ def answers(
     read: Callable[[clingo.Model], Answer | None],
     cubes: Iterable[Cube] | None = None,
 ) -> Iterator[Answer | None]:
-    """What ``read`` makes of each model, in the solver's order; a model of which it makes
-    None is passed over. With ``cubes``, the models that begin with the first of them, then
-    a None, and so on. Raises Stopped at the time limit, or out of memory."""
+    """Give what ``read`` makes of each model, in the solver's order.
+
+    A model of which it makes None is passed over. With ``cubes``, the models that begin with the
+    first of them come first, then a None, and so on.
+
+    Raises:
+        Stopped: The time limit has passed, or memory ran out.
+    """
     program = program_of(experience, query)
 
     def work(put: Put) -> None:
+        """Solve the program, and put what is read."""
         going = True
 
         def take(model: clingo.Model) -> bool:
+            """Put what is read of a model."""
             nonlocal going
             watch.found += 1
             answer = read(model)

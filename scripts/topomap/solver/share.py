@@ -1,5 +1,7 @@
-"""Work in units, shared out among processes or the workers of a Dask cluster: results come in
-the order of the units, whoever has done them."""
+"""Work in units, shared among processes or the workers of a Dask cluster.
+
+The results come in the order of the units, whichever worker has done them.
+"""
 
 from collections.abc import Callable, Iterator, Sequence
 from typing import Protocol, TypeVar
@@ -8,19 +10,22 @@ from topomap.runtime.watch import Watch
 
 Unit = TypeVar("Unit")
 Result = TypeVar("Result")
-Work = Callable[[Unit, Watch | None], Result]  # a function of a module, or partial of one
-AHEAD = 8  # units for each worker that may be done before the one that is next
+Work = Callable[[Unit, Watch | None], Result]  # a function of a module, or a partial of one
+AHEAD = 8  # so many units for each worker may be done in advance
 LOST = "workers were lost"
 
 
 class Crew(Protocol):
-    """Whoever works. As a context it sends its workers home."""
+    """Those who do the work; used as a context, a crew dismisses its workers at the end."""
 
     def each(
         self, work: Work[Unit, Result], units: Sequence[Unit], watch: Watch
     ) -> Iterator[Result]:
-        """The result of each unit, in order. Raises Stopped as the watch does, and where
-        workers are lost again and again."""
+        """The result of each unit, in order.
+
+        Raises:
+            Stopped: The watch ends the work, or workers are lost again and again.
+        """
 
     def __enter__(self) -> "Crew": ...
 
@@ -28,11 +33,12 @@ class Crew(Protocol):
 
 
 class Alone:
-    """This process does all itself."""
+    """A crew of this process alone."""
 
     def each(
         self, work: Work[Unit, Result], units: Sequence[Unit], watch: Watch
     ) -> Iterator[Result]:
+        """The result of each unit, in order."""
         return (work(unit, watch) for unit in units)
 
     def __enter__(self) -> "Alone":

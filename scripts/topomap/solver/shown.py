@@ -8,18 +8,20 @@ from topomap.model.experience import DState
 
 
 class Shown:
-    """What the shown atoms of many models say. Each atom is read once, and then known by the number
-    by which clingo knows it: to ask clingo for its parts, or to compare two atoms, takes longer
-    than all else that is done for a map."""
+    """What the shown atoms of many models say.
+
+    Each atom is read once, and then known by its number in clingo: to ask clingo for the parts of
+    an atom, or to compare two atoms, takes longer than everything else that is done for a map.
+    """
 
     def __init__(self) -> None:
-        self._steps: dict[int, tuple[int, DState]] = {}  # of at/3
+        self._steps: dict[int, tuple[int, DState]] = {}  # what atoms at/3 say
         self._others: dict[int, tuple[str, list[clingo.Symbol]]] = {}
 
     def of(
         self, atoms: Sequence[clingo.Symbol]
     ) -> tuple[tuple[DState, ...], list[tuple[str, list[clingo.Symbol]]]]:
-        """The dstate after each step, and the name and terms of each other atom."""
+        """The dstate after each step, and the name and the terms of each other atom."""
         numbers = [atom._rep for atom in atoms]
         steps, others = self._steps, self._others
         for atom, number in zip(atoms, numbers, strict=True):

@@ -1,4 +1,4 @@
-"""Every hypothesis of a query, or the best ones, by clingo; and how many there are."""
+"""Every hypothesis of a query, or the best ones, by clingo; and the number of hypotheses."""
 
 import hashlib
 from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -23,10 +23,12 @@ from topomap.solver.threads import Put, in_thread
 def demand_cover(
     experience: Experience, query: Query, watch: Watch, cubes: Sequence[Cube], step: int
 ) -> None:
-    """Demand of clingo that each hypothesis after a step begins with just one of the cubes,
-    so that no answer depends on how the search has parted the tree."""
+    """Check by clingo that each hypothesis after a step begins with exactly one of the cubes.
+
+    So no answer depends on how the search has divided the tree.
+    """
     kept = set(CHOSEN)
-    if "no_path_axiom" in query.parts:  # a later link can make the map perpendicular then
+    if "no_path_axiom" in query.parts:  # a later link can then make the map perpendicular
         kept.remove("perpendicular")
     level = replace(query, parts=query.parts & kept, horizon=step)
     known, parted = watch.found, set(cubes)
@@ -37,7 +39,7 @@ def demand_cover(
 
 
 def digest(*experiences: Experience) -> str:
-    """What tells the program, its encodings and these experiences from other ones."""
+    """A digest that identifies the program, its encodings and these experiences."""
     texts = [_program_digest()]
     for seen in experiences:
         texts += [seen.facts(), *seen.constants(), seen.assumptions()]
@@ -68,13 +70,16 @@ def hypotheses(
     kind: str | None = None,
     cubes: Sequence[Cube] | None = None,
 ) -> Iterator[Found | None]:
-    """Every hypothesis of a query; if it minimises, better and better ones, and then
-    all of the best with their proof. With ``cubes``, which is not for minimising, those
-    that begin with the first of them, then a None, and so on."""
+    """Find every hypothesis of a query.
 
+    If the query minimises, better and better ones come first, and then all of the best with their
+    proof. With ``cubes``, which is not for minimising, those that begin with the first cube come
+    first, then a None, and so on.
+    """
     shown = Shown()
 
     def read(model: clingo.Model) -> Found:
+        """Read a hypothesis from a model."""
         at, others = shown.of(model.symbols(shown=True))
         if query.optimizes:
             misread = misreadings(terms for name, terms in others if name == "misread")
@@ -85,21 +90,24 @@ def hypotheses(
     return answers(experience, query, watch, read, cubes)
 
 
-Way = Callable[..., Iterator[Found | None]]  # hypotheses, here or by search
+Way = Callable[..., Iterator[Found | None]]  # a function like ``hypotheses``, here or by search
 
 
 def best(
     experience: Experience, query: Query, watch: Watch, way: Way = hypotheses
 ) -> Iterator[Found | None]:
-    """The best maps (semantics: "What is preferred, also where no map is perfect"), as
-    ``hypotheses`` gives them, with what they cost: exceptions, paths and places.
+    """Find the best maps, as ``hypotheses`` gives them, with their cost.
 
-    ``optimal``: closed, with the fewest exceptions to consistent boundaries, then the fewest paths,
-    then the fewest places; where no map is closed, ``best so far``: the same, pending gateways
-    allowed. If views may be wrong, maps that disbelieve more than another one are neither.
+    (semantics: "What is preferred, also where no map is perfect".) The cost is the numbers of
+    exceptions, paths and places.
 
-    If the least genus is preferred, it comes before the exceptions. Else maps without exceptions
-    are looked for first (``preferences``).
+    The maps are ``optimal`` if they are closed, with the fewest exceptions to consistent
+    boundaries, then the fewest paths, then the fewest places. If no map is closed, they are ``best
+    so far``: the same with pending gateways allowed. If views may be wrong, a map that contradicts
+    more views than another one is neither.
+
+    If the least genus is preferred, it comes before the exceptions. Otherwise maps without
+    exceptions are looked for first (``preferences``).
     """
     least: tuple[int, ...] = ()
     if query.noise is not None:
@@ -126,16 +134,18 @@ def best(
 
 
 def preferences(query: Query) -> list[tuple[str, tuple[int, ...]]]:
-    """The parts by which to look for maps with the fewest exceptions, one after the other until
-    there is a map, and what goes before the cost of the maps that each has. Maps without exceptions
-    come first: that prunes, and mostly there are some. But a map with exceptions may have a lesser
-    genus, so where that is preferred all maps are looked through at once."""
+    """The parts by which to look for maps with the fewest exceptions, until there is a map.
+
+    With each comes what precedes the cost of its maps. Maps without exceptions come first, because
+    this prunes the search, and mostly there are some. But a map with exceptions may have a smaller
+    genus, so where that is preferred all maps are considered at once.
+    """
     either = [("boundary", (0,)), ("exceptions", ())]
     return either[1:] if "genus" in query.parts else either
 
 
 def _first_proved(maps: Iterator[Found | None]) -> Found | None:
-    """The first map that is proved to be best, if there is one. With the call ends the search."""
+    """The first map that is proved to be best, or None; the search ends with the call."""
     return next((found for found in maps if found and found.proved), None)
 
 
@@ -146,17 +156,19 @@ def count(
     watch: Watch | None = None,
     grown: bool = True,
 ) -> tuple[int, int]:
-    """How many hypotheses begin with a cube (best ones, if the query minimises), and, if
-    asked for, how many of these have a last step that added a link (or have no step).
+    """Count the hypotheses that begin with a cube (the best ones, if the query minimises).
 
-    clingo counts, and no answer comes to Python; each is met once, also where those that
-    have grown are counted apart. Without a watch it is counted in the caller's thread."""
+    If it is asked for, those are counted, too, whose last step added a link (or that have no step).
+    clingo counts, and no answer comes to Python; each is met once, even if those that have grown
+    are counted separately. Without a watch it is counted in the caller's thread.
+    """
     program = program_of(experience, query)
     last = experience.steps if query.horizon is None else min(query.horizon, experience.steps)
     fresh = clingo.Function("fresh", [clingo.Number(last)])
     counts: list[tuple[int, tuple[float, ...]]] = []
 
     def work(put: Put) -> None:
+        """Count, and put the numbers."""
         for more in [[(fresh, True)], [(fresh, False)]] if grown and last else [[]]:
             program.solve(cube, more)
             counts.append(program.models())

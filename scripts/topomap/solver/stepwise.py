@@ -1,10 +1,9 @@
-"""The hypotheses of an experience that goes on, by clingo: how many there are, the best maps, and
-what is certain.
+"""The hypotheses of an experience that goes on, by clingo.
 
-clingo keeps its program (``encodings/online.lp``), and each step grounds its own part alone. A
-step that is taken back is switched off; the step that comes in its place has a number of its
-own in the program. How many hypotheses there are, the search tells from those that there were
-a step before.
+It tells how many there are, the best maps, and what is certain. clingo keeps its program
+(``encodings/online.lp``), and each step grounds only its own part. A step that is taken back is
+switched off, and the step that replaces it has a number of its own in the program. The search finds
+the number of hypotheses from the hypotheses of the step before.
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -25,16 +24,17 @@ from topomap.search.traversal import root
 from topomap.solver.boundaries import Boundaries
 from topomap.solver.solving import best
 
-TRIED = 10  # times as many nodes are visited to tell that there are more
-MAPS = 100  # best maps that are kept
+TRIED = 10  # so many times as many nodes are visited to find that there are more
+MAPS = 100  # the number of best maps that are kept
 
 
 @dataclass(frozen=True)
 class Asked:
-    """Which hypotheses are asked for, and how exact what is told of them is.
+    """Which hypotheses are asked for, and how exact measurements are.
 
-    ``most`` is how many hypotheses are counted. ``drift`` and ``stretch`` tell, in percent, how far
-    shifts and lengths may be wrong, and ``tolerance``, in slots, how far bearings may be.
+    ``most`` is the largest number of hypotheses that is counted. ``drift`` and ``stretch`` tell, in
+    percent, how wrong shifts and lengths may be, and ``tolerance``, in slots, how wrong bearings
+    may be.
     """
 
     planar: bool = False
@@ -47,15 +47,16 @@ class Asked:
 
 
 class Stepwise:
-    """An exploration that goes on, from its start; steps can be taken back."""
+    """An exploration that goes on from its start; steps can be taken back."""
 
     def __init__(self, slots: int, first: Step, asked: Asked):
-        """Begin where the first view was seen.
+        """Begin at the start, where the first view was seen.
 
-        Without the path axiom, or where it is told which gateways are on one path, the best
-        maps are found anew after each step, as the program does not tell the number of paths then,
-        or what is left and right of them. Where bearings are not exact, there is no program: the
-        hypotheses are those of the search."""
+        Without the path axiom, or if it is told which gateways are on one path, the best maps are
+        found anew after each step, because the program does not know the number of paths then, or
+        what is left and right of them. If bearings are not exact, there is no program, and the
+        hypotheses are those of the search.
+        """
         marked = ([0] * (name in first.marks) for name in MARKER)
         self.experience = Experience(
             slots,
@@ -92,30 +93,33 @@ class Stepwise:
         self._control.load(str(ENCODINGS / "online/certain.lp"))
         self._boundaries = Boundaries(self)
         self._control.register_propagator(self._boundaries)
-        # no_path_axiom.lp demands an entry of topomap.lp, and is not loaded.
+        # no_path_axiom.lp needs topomap.lp, so it is not loaded.
         told = "straight_told. " * bool(self.experience.straight)
         told += "no_path_axiom. " * (not asked.path_axiom)
         self._control.add("base", [], f"online. slots({slots}). {told}#external consistent.")
         self.visits: list[int] = []  # the number of each step in the program
         self._numbered = 0
         self._level: list[tuple[int, ...]] = [(0,)]  # the hypotheses after some step
-        self._wide = False  # a later step has too many of them
+        self._wide = False  # whether a later step has too many of them
         self._none: int | None = None
         self._ground([], ("base", []))
 
     @property
     def rules(self) -> int:
-        """The ground rules so far."""
+        """The number of ground rules so far."""
         return int(self._control.statistics["problem"]["lp"]["rules"])
 
     @property
     def size(self) -> int:
-        """How large the program is: the ground atoms so far."""
+        """The size of the program: the number of ground atoms so far."""
         return len(self._control.symbolic_atoms)
 
     def step(self, step: Step) -> None:
-        """Go a step on. The caller has seen to it that the turn leads to a gateway, and the marker
-        is not out twice."""
+        """Go a step on.
+
+        The caller has checked that the turn leads to a gateway, and that the marker is not put down
+        twice.
+        """
         self.experience = self.experience.then(step)
         pairs = {"same": step.same, "apart": step.apart}
         told = [
@@ -142,7 +146,7 @@ class Stepwise:
         self._numbered += 1
 
     def undo(self, steps: int = 1) -> None:
-        """Take the last steps back; there are as many."""
+        """Take the last steps back; there must be as many."""
         left = self.experience.steps - steps
         self.experience = self.experience.cut(left)
         for visit in self.visits[left + 1 :] if not self.experience.tolerance else ():
@@ -165,16 +169,23 @@ class Stepwise:
         return self._level if known else None
 
     def number(self, certain: Certain | None, watch: Watch) -> tuple[int, bool, int | None]:
-        """What ``count`` says, of which something may follow from what is certain; and the first
-        step after which there is no hypothesis."""
+        """Count the hypotheses, for which what is certain may be of use.
+
+        Returns:
+            What ``count`` returns, and the first step after which there is no hypothesis.
+        """
         number, exact = self.count(watch)
-        if certain and not certain.new and self._none is None:  # where it begins is always new
+        if certain and not certain.new and self._none is None:  # the first place is always new
             self._none, number, exact = self.experience.steps, 0, True
         return number, exact, self._none
 
     def count(self, watch: Watch) -> tuple[int, bool]:
-        """How many hypotheses there are, and true; or a number that they are more than (-1 if
-        none was found as yet), and false."""
+        """Count the hypotheses.
+
+        Returns:
+            Their number and True; or False and a number that they exceed (-1 if none has been
+            found).
+        """
         if self._none is not None:
             return 0, True
         node = root(self.experience, self._query)
@@ -190,7 +201,7 @@ class Stepwise:
         return len(self._level), True
 
     def _next(self, node: Hypothesis, watch: Watch) -> list[tuple[int, ...]] | None:
-        """The next level of the tree, if it is not too large."""
+        """Find the next level of the tree, if it is not too large."""
         level: list[tuple[int, ...]] = []
         before = tuple(node.at)
         for number, at in enumerate(self._level):
@@ -204,7 +215,7 @@ class Stepwise:
         return level
 
     def _more(self, node: Hypothesis, watch: Watch) -> tuple[int, bool]:
-        """The same by the depth, where a level between is too large to be kept."""
+        """Count the next level depth-first, if a level in between is too large to be kept."""
         leaves = nodes = deepest = 0
         last = self.experience.steps
         kept = []
@@ -233,10 +244,11 @@ class Stepwise:
         return leaves, True
 
     def best(self, watch: Watch) -> tuple[str | None, tuple[int, ...], list[tuple[DState, ...]]]:
-        """The best maps, one more than ``MAPS`` at most: of what kind they are, and their cost.
+        """Find the best maps, at most one more than ``MAPS``: their kind and their cost.
 
-        Maps without exceptions to consistent boundaries are looked for step by step. Where all
-        closed maps have some, or all maps, the best ones are found anew, of the whole."""
+        Maps without exceptions to consistent boundaries are looked for step by step. If all closed
+        maps have some, or all maps, the best ones are found anew, from the whole.
+        """
         seen = self.experience
         if "no_path_axiom" in self._query.parts or seen.straight or seen.tolerance:
             return self._anew(watch)
@@ -250,7 +262,7 @@ class Stepwise:
         return None, (), []
 
     def _anew(self, watch: Watch) -> tuple[str | None, tuple[int, ...], list[tuple[DState, ...]]]:
-        """The best maps, found from scratch."""
+        """Find the best maps from scratch."""
         proved = (one for one in best(self.experience, self._query, watch) if one and one.proved)
         maps = [*islice(proved, MAPS + 1)]
         if not maps:
@@ -264,12 +276,15 @@ class Stepwise:
         consistent: bool,
         most: int = MAPS + 1,
     ) -> tuple[tuple[int, ...], list[tuple[DState, ...]]]:
-        """Maps with the fewest paths, then the fewest places, with ``consistent`` boundaries or of
-        any kind, at ``most`` so many; and what they cost."""
+        """Find maps with the fewest paths, then the fewest places, and their cost.
+
+        They have ``consistent`` boundaries, or may have any; at most ``most`` are found.
+        """
         found: list[tuple[DState, ...]] = []
         cost: list[int] = []
 
         def take(model: clingo.Model) -> bool:
+            """Note a map."""
             if model.optimality_proven or not consistent:
                 cost[:] = model.cost
                 found.append(self._dstates(model))
@@ -284,14 +299,18 @@ class Stepwise:
         return tuple(cost), found
 
     def certain(self, watch: Watch) -> Certain | None:
-        """What holds in all hypotheses; nothing, if there is none. None where there is no program,
-        and the search has not found all of them, because they are too many."""
+        """Find what holds in all hypotheses (the cautious consequences); nothing, if there is none.
+
+        It is None if there is no program and the search has not found all hypotheses because they
+        are too many.
+        """
         if self.experience.tolerance:
             _, exact = self.count(watch)
             return self._certain_of(self._level) if exact else None
         atoms: list[clingo.Symbol] = []
 
         def take(model: clingo.Model) -> bool:
+            """Note the consequences so far."""
             atoms[:] = model.symbols(shown=True)
             return True
 
@@ -314,7 +333,7 @@ class Stepwise:
         return Certain(frozenset(same), frozenset(new), frozenset(self._linked(first)))
 
     def _certain_of(self, hypotheses: Sequence[tuple[int, ...]]) -> Certain:
-        """The same of these hypotheses."""
+        """What holds in all of these hypotheses."""
         seen = self.experience
         if self._none is not None or not hypotheses:
             return Certain(frozenset(), frozenset(), frozenset())
@@ -331,7 +350,7 @@ class Stepwise:
                 if any(at[earlier] != at[later] for at in places):
                     continue
                 same.add((earlier, later))
-                # As a gateway of the earlier visit, by its number there.
+                # The gateway of the earlier visit that has this number there.
                 turned = {
                     (star.index(at[later] % slots) - star.index(at[earlier] % slots)) % len(star)
                     for at in hypotheses
@@ -342,8 +361,10 @@ class Stepwise:
         return Certain(frozenset(same), frozenset(new), frozenset(self._linked(first)))
 
     def _linked(self, first: dict[int, tuple[int, int]]) -> Iterator[Linked]:
-        """The links of which it is certain that the steps that made them were at places seen
-        before: said of the first visits there."""
+        """The links of steps that certainly ended at places seen before.
+
+        They are told of the first visits there.
+        """
         for step, turn in enumerate(self.experience.turns, 1):
             if turn is None:
                 continue
@@ -374,7 +395,7 @@ class Stepwise:
     ) -> None:
         with self._control.solve(assumed, on_model=take, async_=True) as handle:
             while not handle.wait(0.1):
-                watch.tick()  # ends the call, if it raises
+                watch.tick()  # an error in it ends the call
             handle.get()
 
 
@@ -383,7 +404,7 @@ def _atom(name: str, *numbers: int) -> clingo.Symbol:
 
 
 def _go(node: Hypothesis, before: tuple[int, ...], at: tuple[int, ...]) -> None:
-    """Go from one node of the tree, where it stands, to another one."""
+    """Go from the current node of the tree to another one."""
     common = min(len(before), len(at))
     while before[:common] != at[:common]:
         common -= 1

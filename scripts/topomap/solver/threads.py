@@ -1,8 +1,8 @@
-"""Threads in which clingo works, while whoever waits for it looks at the clock.
+"""Threads in which clingo works, while the caller watches the clock.
 
-So a time limit and Ctrl-C end a call of clingo at any moment, while it grounds too, and what was
-found until then is kept. No such thread is at work when the interpreter is torn down: one that
-then wants to call Python would take the whole process with it.
+So a time limit and Ctrl-C end a call of clingo at any moment, even while it grounds, and what was
+found until then is kept. No such thread may be at work when the interpreter ends, because a thread
+that then calls Python would crash the whole process.
 """
 
 import _thread
@@ -22,38 +22,43 @@ import clingo
 from topomap.runtime.status import INTERRUPT
 from topomap.runtime.watch import MEMORY, Stopped, Watch
 
-AHEAD = 1000  # answers that wait to be taken, at most
-# Seconds between two times that a thread wakes the one that waits for what it hands over, and that
-# this one sleeps at most: where answers come fast, many are taken at a time.
+AHEAD = 1000  # the largest number of answers that wait
+# Seconds between two times that a thread wakes the one that waits for its items, and the longest
+# time that the latter sleeps: if answers come fast, many are taken at a time.
 WAKING, SLEEP, TURN = 0.002, 0.01, 0.1
-PATIENCE = 1.0  # seconds that a thread has to end when the process does
+PATIENCE = 1.0  # seconds within which a thread must end when the process ends
 
-Put = Callable[[Any], bool]  # hands an item over; False if no more of them are wanted
+Put = Callable[[Any], bool]  # it hands an item over, and returns False if no more are wanted
 
 
 class Called(Protocol):
-    """What works in a thread."""
+    """Something that works in a thread."""
 
     say: Callable[[str], None]
 
     def interrupt(self) -> None:
-        """End the call of another thread, as soon as it has grounded."""
+        """End the call of another thread as soon as it has grounded."""
 
     def keep(self) -> None:
-        """Have it at hand, if this thread asks for it again."""
+        """Keep it for the next call of this thread."""
 
 
 def prepare() -> None:
-    """Have C++ allocate what it needs to report an error in this thread: when it is out of
-    memory it cannot, and aborts."""
+    """Let C++ allocate what it needs to report an error in this thread.
+
+    When it is out of memory, it cannot do that any more, and aborts.
+    """
     with contextlib.suppress(RuntimeError):
         clingo.parse_term("", logger=lambda *_: None)
 
 
 class _Worker:
-    """A thread that does one job after another. It is started while there is memory, and has
-    what it needs when there is none left: a threading.Thread that cannot begin is waited for
-    without end, and C++ aborts where it cannot report an error."""
+    """A thread that does one job after another.
+
+    It is started while there is memory, and has what it needs when there is none left. A
+    threading.Thread that cannot begin would be waited for without end, and C++ would abort where it
+    cannot report an error.
+    """
 
     idle: ClassVar[list["_Worker"]] = []
 
@@ -66,7 +71,11 @@ class _Worker:
 
     @classmethod
     def hire(cls) -> "_Worker":
-        """An idle one, or a new one. Raises Stopped if there is no room for it."""
+        """Find an idle worker, or make a new one.
+
+        Raises:
+            Stopped: There is not enough memory for it.
+        """
         try:
             return cls.idle.pop()
         except IndexError:
@@ -77,10 +86,11 @@ class _Worker:
             raise Stopped(MEMORY) from None
 
     def do(self, job: Callable[[], None], over: threading.Event) -> None:
-        """Begin with a job; the event is set when it is done."""
+        """Begin a job; the event is set when it is done."""
         self._jobs.put((job, over))
 
     def is_alive(self) -> bool:
+        """Whether the thread runs."""
         return self._alive() is not None
 
     def _run(self, _: object) -> None:
@@ -88,7 +98,7 @@ class _Worker:
         while True:
             job, over = self._jobs.get()
             job()
-            del job  # and what it holds
+            del job  # this frees what the job holds
             self.idle.append(self)
             over.set()
 
@@ -98,10 +108,10 @@ class _Life:
 
 
 class _Run:
-    """The work of a program in a thread, and what is handed over by it."""
+    """The work of a program in a thread, and the items that it hands over."""
 
-    live: ClassVar[set["_Run"]] = set()  # those that have not ended
-    leaving: ClassVar[bool] = False  # the process ends: nothing is begun any more
+    live: ClassVar[set["_Run"]] = set()  # the runs that have not ended
+    leaving: ClassVar[bool] = False  # whether the process is ending, so that nothing may begin
 
     def __init__(self, program: Called, work: Callable[[Put], None]):
         if self.leaving:
@@ -121,9 +131,9 @@ class _Run:
         try:
             try:
                 self._work(self._put)
-            except Exception as error:  # raised again in the thread that waits
+            except Exception as error:  # it is raised again in the thread that waits
                 end = error
-            # What was stopped may have ended early, and its errors hold what it worked with.
+            # The job may have been stopped, and its errors hold what it worked with.
             self._items.append(Stopped(INTERRUPT) if self._stop.is_set() else end)
             self._some.set()
         finally:
@@ -135,7 +145,7 @@ class _Run:
         if len(self._items) >= AHEAD:
             self._room.clear()
             self._some.set()
-            # Only now it is sure that whoever makes room, or stops this, wakes it.
+            # Only from here on is this thread woken by one that makes room or stops it.
             if len(self._items) >= AHEAD and not self._stop.is_set():
                 self._room.wait()
         if self._stop.is_set():
@@ -147,18 +157,22 @@ class _Run:
         return True
 
     def get(self) -> Any:
-        """The next item. Raises queue.Empty if there is none for a while, and Stopped if there
-        will be none as memory ran out."""
+        """Take the next item.
+
+        Raises:
+            queue.Empty: There has been none for a while.
+            Stopped: There will be none, because memory ran out.
+        """
         items = self._items
         if not items:
             end = time.monotonic() + TURN
             while not items:
-                # Nobody sets it between the look and the sleep: it is cleared before the look.
+                # The event is cleared before the look, so it cannot be missed before the sleep.
                 self._some.clear()
                 if not items:
                     self._some.wait(SLEEP)
                 if not items and time.monotonic() > end:
-                    if not self._worker.is_alive() and not items:  # it could not even say why
+                    if not self._worker.is_alive() and not items:  # it could not even report why
                         raise Stopped(MEMORY)
                     raise queue.Empty
         item = items.popleft()
@@ -167,19 +181,22 @@ class _Run:
         return item
 
     def stop(self) -> None:
-        """Have it end, as soon as clingo can be interrupted."""
+        """End the work as soon as clingo can be interrupted."""
         self._stop.set()
         self._room.set()
         self._program.interrupt()
 
     def wait(self, seconds: float | None) -> bool:
-        """Wait until it has ended, so long at most; whether it has."""
+        """Wait until the work has ended, at most so long, and tell whether it has."""
         return self._over.wait(seconds) or not self._worker.is_alive()
 
 
 def in_thread(program: Called, watch: Watch, work: Callable[[Put], None]) -> Iterator[Any]:
-    """What ``work`` puts, in a thread of its own; what it puts last is False if it is to
-    end. Raises Stopped at the time limit, or out of memory."""
+    """Give what ``work`` puts, in a thread of its own; putting returns False if it should end.
+
+    Raises:
+        Stopped: The time limit has passed, or memory ran out.
+    """
     program.say = watch.phase
     run = _Run(program, work)
     ended = False
@@ -209,7 +226,7 @@ def in_thread(program: Called, watch: Watch, work: Callable[[Put], None]) -> Ite
 
 @atexit.register
 def _leave() -> None:
-    """End what is still at work before the interpreter is torn down."""
+    """End what is still at work before the interpreter ends."""
     _Run.leaving = True
     running = [*_Run.live]
     for run in running:
@@ -218,16 +235,20 @@ def _leave() -> None:
     try:
         for run in running:
             run.wait(max(0.0, end - time.monotonic()))
-    finally:  # also when Ctrl-C comes
+    finally:  # this also happens after Ctrl-C
         if not all(run.wait(0) for run in running) and not _spare_destructors():
             for run in running:
                 run.wait(None)
 
 
 def _spare_destructors() -> bool:
-    """Have the process end, with the exit status that it is to have, once Python has ended and
-    before C++ tears down what a thread that still grounds is using: grounding cannot be
-    interrupted. Returns whether this C library can do it."""
+    """Let the process end before C++ destroys what a thread that still grounds is using.
+
+    It ends with its exit status, after Python has ended. Grounding cannot be interrupted.
+
+    Returns:
+        Whether this C library can do that.
+    """
     try:
         import ctypes
 
@@ -235,13 +256,13 @@ def _spare_destructors() -> bool:
         on_exit, steps = library.on_exit, (library._exit, library.fcloseall)
     except (ImportError, OSError, AttributeError):
         return False
-    for step in steps:  # the last one is called first: streams of C are written out
+    for step in steps:  # the last one is called first, which flushes the streams of C
         on_exit(step, None)
     return True
 
 
 def _forget() -> None:
-    """In a forked process: it has none of these threads."""
+    """Forget all threads in a forked process, which has none of them."""
     _Worker.idle.clear()
     _Run.live.clear()
 

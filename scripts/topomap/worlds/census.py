@@ -1,4 +1,4 @@
-"""What a world is: how large, which properties its map has, and what no walk tells apart."""
+"""What a world is: its size, the properties of its map, and what no walk can tell apart."""
 
 from collections import Counter
 from collections.abc import Iterator, Mapping
@@ -8,19 +8,20 @@ from typing import Any, NamedTuple
 from topomap.model import words
 from topomap.model.topology import Gateway, Place, TopologicalMap
 
-MOST_PATHS = 2_000  # of each two of these it is asked whether they meet
-MOST_PLACES = 20_000  # on them
+MOST_PATHS = 2_000  # with more paths, it is not computed which of them meet
+MOST_PLACES = 20_000  # the same holds with more places
 
 
 class Census(NamedTuple):
     """What is told of a world.
 
-    ``planar`` is whether it is embedded in the plane, as its slots have it; ``path_axiom`` how it
-    breaks the path axiom, or None; ``exceptions`` the number of exceptions to consistent
-    boundaries, and ``perpendicular`` whether it is qualitatively perpendicular (the paper, section
-    IV), both None if there are too many paths, or circular ones. ``views`` is how many kinds of
-    views there are, and ``classes`` how many classes of dstates such that no walk in turns tells
-    two of a class apart; ``with_compass`` is the same where a compass is read, too.
+    ``planar`` tells whether it is embedded in the plane with the order of its slots. ``path_axiom``
+    tells how it breaks the path axiom, or is None. ``exceptions`` is the number of exceptions to
+    consistent boundaries, and ``perpendicular`` tells whether the map is qualitatively
+    perpendicular (the paper, section IV); both are None if there are too many paths, or circular
+    ones. ``views`` is the number of kinds of views. ``classes`` is the number of classes of
+    bisimilar dstates, such that no walk in turns tells two dstates of a class apart;
+    ``with_compass`` is the same number if a compass is read, too.
     """
 
     places: int
@@ -39,11 +40,11 @@ class Census(NamedTuple):
     with_compass: int
 
     def document(self) -> dict[str, Any]:
-        """The same for JSON."""
+        """The census as JSON."""
         return self._asdict()
 
     def lines(self) -> Iterator[str]:
-        """The same in words, each line a sentence."""
+        """The census in words, with a sentence in each line."""
         places, ways = words.number(self.places, "place"), words.number(self.ways, "way")
         yield (
             f"{places}, {ways}, {self.slots} slots; loops: {self.loops}, "
@@ -67,7 +68,7 @@ def _yes(holds: bool) -> str:
 
 
 def census(world: TopologicalMap) -> Census:
-    """What a world is."""
+    """Find out what a world is."""
     fault = world.path_axiom_fault()
     paths = world.paths()
     small = fault is None and len(paths) <= MOST_PATHS and len(world.stars) <= MOST_PLACES
@@ -92,17 +93,23 @@ def census(world: TopologicalMap) -> Census:
 
 
 def look(world: TopologicalMap, gateway: Gateway) -> tuple[Any, ...]:
-    """What is seen at a gateway: the slots of the others clockwise of it, the landmarks, and which
-    of them are on one path, if that is told."""
+    """What is seen at a gateway.
+
+    It has the slots of the other gateways, clockwise from this one, the landmarks, and which of the
+    gateways are on one path, if that is told.
+    """
     landmarks = world.landmarks.get(gateway[0], frozenset())
     return world.view(gateway), landmarks, world.pairs(gateway)
 
 
 def classes(world: TopologicalMap, looks: Mapping[Gateway, Any]) -> dict[Gateway, int]:
-    """Of each dstate its class: no walk tells two of a class apart by what is seen, ``looks``. The
-    coarsest partition in which equal turns lead from one class to one class, by Hopcroft's
-    algorithm: of two parts of a class the smaller one parts others. Gateways that are not linked
-    lead nowhere."""
+    """Divide dstates into classes of bisimilar ones.
+
+    No walk tells two dstates of a class apart by what is seen (``looks``). This is the coarsest
+    partition in which equal turns lead from one class to one class. It is found by Hopcroft's
+    algorithm: when a class is split, the smaller of its two parts is used to split other classes.
+    Gateways that are not linked lead nowhere.
+    """
     before: dict[Gateway, list[tuple[int, Gateway]]] = {gateway: [] for gateway in looks}
     blocks: dict[Any, set[Gateway]] = {}
     for (place, slot), seen in looks.items():
@@ -125,7 +132,7 @@ def classes(world: TopologicalMap, looks: Mapping[Gateway, Any]) -> dict[Gateway
                 leading.setdefault(turn, {}).setdefault(of[gateway], set()).add(gateway)
         for met in leading.values():
             for gateways in [*met.values()]:
-                # They were of one class when this began; since then it may have been parted.
+                # They were in one class at the start of this round, which may be split by now.
                 now: dict[int, set[Gateway]] = {}
                 for gateway in gateways:
                     now.setdefault(of[gateway], set()).add(gateway)
@@ -144,7 +151,7 @@ def classes(world: TopologicalMap, looks: Mapping[Gateway, Any]) -> dict[Gateway
 
 
 def perpendicular(paths: list[list[Gateway]]) -> bool:
-    """Whether no two paths meet twice, and no three make a triangle."""
+    """Tell whether no two paths meet twice, and no three make a triangle."""
     on: dict[Place, list[int]] = {}
     for number, path in enumerate(paths):
         for place in {place for place, _ in path}:

@@ -1,4 +1,4 @@
-"""From a plan to a world: which slots the exits of a place have, and which of them are on one path.
+"""From a plan to a world: the slots of the exits, and which exits are on one path.
 
 Slot 0 of K points ``north`` degrees clockwise of north, and each exit has the slot whose direction
 is nearest to its bearing. No two exits of a place may have one slot.
@@ -15,23 +15,27 @@ from topomap.model.topology import Gateway, Place, TopologicalMap, label
 from topomap.runtime.errors import InputError
 from topomap.worlds.plan import Exit, Plan, Point, Way
 
-FEWEST, MOST = 4, 360  # slots that are tried; with four, straight on and a turn can be told apart
-SHOWN = 20  # clashes that are listed
-DIGITS = 9  # of bearings and slots that count: what is less is an error of rounding
+FEWEST, MOST = 4, 360  # numbers of slots to try; with four, straight on and a turn differ
+SHOWN = 20  # the largest number of clashes that are listed
+DIGITS = 9  # bearings and slots are rounded to so many digits, against errors of rounding
 
 
 class Layout(NamedTuple):
-    """A number of slots, where slot 0 points (degrees clockwise of north), and by how many degrees
-    that may be turned either way before two exits of a place share a slot; infinite if none will,
-    however they are turned."""
+    """A number of slots, and where slot 0 points, in degrees clockwise of north.
+
+    It has the number of degrees by which the slots may be turned either way before two exits of a
+    place share one. This is infinite if no two exits share one, however the slots are turned.
+    """
 
     slots: int
     north: float
     margin: float
 
     def slot(self, bearing: float) -> int:
-        """The slot whose direction is nearest to a bearing; of two that are as near, the one
-        clockwise of it."""
+        """The slot whose direction is nearest to a bearing.
+
+        If two are equally near, it is the one clockwise of the bearing.
+        """
         slot = round((bearing - self.north) * self.slots / 360 + 0.5, DIGITS)
         return math.floor(slot) % self.slots
 
@@ -54,8 +58,10 @@ class Clash(NamedTuple):
 
 
 def exits_of(ways: Iterable[Way]) -> dict[Place, list[tuple[float, int, int]]]:
-    """Of each place its exits: the bearing, 0 up to 360, the number of the way, and which of its
-    two ends it is; sorted."""
+    """List the exits of each place, sorted.
+
+    Each has its bearing, from 0 up to 360, the number of its way, and which of the two ends it is.
+    """
     exits: dict[Place, list[tuple[float, int, int]]] = {}
     for number, way in enumerate(ways):
         for end, (place, bearing) in enumerate(way.ends):
@@ -64,9 +70,14 @@ def exits_of(ways: Iterable[Way]) -> dict[Place, list[tuple[float, int, int]]]:
 
 
 def layout(file: str, plan: Plan, slots: int | None = None, north: float | None = None) -> Layout:
-    """The fewest slots, and the best turn of them, by which no two exits of a place share one; of
-    these only what is not given is chosen. The best turn is in the middle of the largest range of
-    such turns. Raises InputError, one line, which lists what clashes if nothing parts the exits."""
+    """Choose the fewest slots, and their best turn, so that no two exits of a place share one.
+
+    Only what is not given is chosen. The best turn is in the middle of the largest range of such
+    turns.
+
+    Raises:
+        InputError: No choice separates the exits. One line, which lists the clashes.
+    """
     if slots is not None and (not 2 <= slots <= MOST_SLOTS or slots % 2):
         raise InputError(f"{file}: {slots} slots: they must be even, from 2 to {MOST_SLOTS}")
     if north is not None and not math.isfinite(north):
@@ -82,7 +93,7 @@ def layout(file: str, plan: Plan, slots: int | None = None, north: float | None 
             _best_turn(gaps, many) if north is None else (north, _margin(gaps, many, north))
         )
         at = Layout(many, turn, margin)
-        # Exits on the border of two slots are the ones that might clash though the margin is none.
+        # With a margin of 0, exits on the border of two slots may still clash.
         if margin >= 0 and not clashes(plan.ways, exits, at):
             return at
     most = Layout(MOST if slots is None else slots, north or 0.0, 0.0)
@@ -91,11 +102,11 @@ def layout(file: str, plan: Plan, slots: int | None = None, north: float | None 
     more = f"; and {len(found) - SHOWN} more" if len(found) > SHOWN else ""
     turned = "however they are turned" if north is None else f"with slot 0 at {north:g} degrees"
     upto = f"up to {MOST}" if slots is None else str(slots)
-    raise InputError(f"{file}: {upto} slots do not part all ways, {turned}: {told}{more}")
+    raise InputError(f"{file}: {upto} slots do not separate all ways, {turned}: {told}{more}")
 
 
 def _gaps(exits: list[tuple[float, int, int]]) -> list[tuple[float, float]]:
-    """The bearings of each two exits of a place that follow each other, clockwise."""
+    """The pairs of bearings of neighbouring exits of a place, clockwise."""
     if len(exits) < 2:
         return []
     bearings = [bearing for bearing, _, _ in exits]
@@ -103,13 +114,15 @@ def _gaps(exits: list[tuple[float, int, int]]) -> list[tuple[float, float]]:
 
 
 def _best_turn(gaps: list[tuple[float, float]], slots: int) -> tuple[float, float]:
-    """The middle of the largest range of turns at which all exits are parted, and half its width;
-    a negative width if there is none. Of the turns that are the same but for whole slots it is the
-    one nearest to north."""
+    """The middle of the largest range of turns that separate all exits, and half its width.
+
+    The width is negative if there is no such turn. Of the turns that differ by whole slots, the one
+    nearest to north is taken.
+    """
     width = 360 / slots
     # Between two bearings that are less than a slot apart there must be a border of slots. Borders
-    # are half a slot from where slots point. So the turns that fail begin half a slot after the
-    # second bearing, and end where a whole slot has gone by since the first one.
+    # are half a slot from the directions of slots. So the turns that fail begin half a slot after
+    # the second bearing, and end half a slot after the first one, by whole slots.
     bad = []
     for one, other in gaps:
         if other - one < width:
@@ -135,8 +148,10 @@ def _best_turn(gaps: list[tuple[float, float]], slots: int) -> tuple[float, floa
 
 
 def _margin(gaps: list[tuple[float, float]], slots: int, north: float) -> float:
-    """By how many degrees slots may be turned either way before two exits share one; negative if
-    they do."""
+    """By how many degrees slots may be turned either way before two exits share one.
+
+    It is negative if two exits share one already.
+    """
     width = 360 / slots
     margin = math.inf
     for one, other in gaps:
@@ -152,7 +167,7 @@ def _margin(gaps: list[tuple[float, float]], slots: int, north: float) -> float:
 def clashes(
     ways: tuple[Way, ...], exits: Mapping[Place, list[tuple[float, int, int]]], at: Layout
 ) -> list[Clash]:
-    """Each two exits of a place that share a slot."""
+    """The pairs of exits of a place that share a slot."""
     found = []
     for place, of in exits.items():
         taken: dict[int, tuple[Place, float]] = {}
@@ -170,14 +185,17 @@ def links_of(ways: Iterable[Way], at: Layout) -> dict[Gateway, Gateway]:
     for way in ways:
         one, other = ((place, at.slot(bearing)) for place, bearing in way.ends)
         if one in links or other in links or one == other:
-            raise RuntimeError("two exits share a slot")  # layout sees to it that none do
+            raise RuntimeError("two exits share a slot")  # layout makes sure that none do
         links[one], links[other] = other, one
     return links
 
 
 def across_of(ways: tuple[Way, ...], at: Layout, most: float) -> dict[Gateway, Gateway]:
-    """Which exits of a place are on one path: each with that which is most nearly straight across,
-    if this holds both ways, and it is off by at most so many degrees."""
+    """Tell which exits of a place are on one path.
+
+    Each exit belongs to the one most nearly opposite to it, if this is mutual, and if they are off
+    from being opposite by at most so many degrees.
+    """
     across: dict[Gateway, Gateway] = {}
     for place, of in exits_of(ways).items():
         best = {}
@@ -197,13 +215,16 @@ def across_of(ways: tuple[Way, ...], at: Layout, most: float) -> dict[Gateway, G
 
 
 def _bend(one: float, other: float) -> float:
-    """By how many degrees two bearings are not opposite."""
+    """By how many degrees two bearings are off from being opposite."""
     return abs((one - other) % 360 - 180)
 
 
 def world_of(plan: Plan, at: Layout, straight: float | None = None) -> TopologicalMap:
-    """The world of a plan; with ``straight``, exits are on one path as ``across_of`` has it, else
-    as the plan says, or if they are opposite."""
+    """Make the world of a plan.
+
+    With ``straight``, exits are on one path as ``across_of`` finds it; otherwise as the plan says,
+    or if they are opposite.
+    """
     links = links_of(plan.ways, at)
     stars: dict[Place, set[int]] = {place: set() for place in sorted({p for p, _ in links})}
     for place, slot in links:
@@ -218,7 +239,7 @@ def world_of(plan: Plan, at: Layout, straight: float | None = None) -> Topologic
 
 
 def _pairs(plan: Plan, at: Layout) -> dict[Gateway, Gateway] | None:
-    """Which exits are on one path, if the plan says so."""
+    """The pairs of exits on one path, if the plan tells them."""
     if plan.straight is None:
         return None
     pairs = [[(end.place, at.slot(end.bearing)) for end in pair] for pair in plan.straight]
@@ -226,8 +247,11 @@ def _pairs(plan: Plan, at: Layout) -> dict[Gateway, Gateway] | None:
 
 
 def shares(ends: Iterable[tuple[Place, Place]]) -> Callable[[Place, Place], float]:
-    """At which share of the way between two places its direction is taken at most: in the middle if
-    there are several ways between them, as these part there and not at the other end."""
+    """Tell up to which share of a way between two places its direction may be taken.
+
+    It is the middle of the way if there are several ways between the places, because these are
+    apart in the middle, but meet at the other end. Otherwise it is the whole way.
+    """
     many = Counter(frozenset(pair) for pair in ends)
     return lambda one, other: 0.5 if many[frozenset((one, other))] > 1 else 1.0
 
@@ -238,14 +262,16 @@ def exit_towards(place: Place, here: tuple[float, float], there: tuple[float, fl
 
 
 def point_along(course: Sequence[Point], far: float, share: float = 1.0) -> Point:
-    """The point so far along a way, but at most at this share of it; of a way back to the same
-    place, at most a third along it."""
+    """The point so far along a way, but at most at this share of its length.
+
+    On a way back to the same place it is at most a third of the way.
+    """
     long = sum(math.dist(*pair) for pair in pairwise(course))
     far = min(far, long * min(share, 1 / 3 if course[0] == course[-1] else 1.0))
     for one, other in pairwise(course):
         long = math.dist(one, other)
         if 0 < long >= far:
-            share = far / long if far > 0 else 1.0  # 0: as the way begins
+            share = far / long if far > 0 else 1.0  # 0: in the direction in which the way begins
             return one[0] + share * (other[0] - one[0]), one[1] + share * (other[1] - one[1])
         far -= long
     return course[-1]

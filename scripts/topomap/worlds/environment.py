@@ -1,8 +1,7 @@
-"""Worlds to explore: grids, tori, cylinders, crescents, mazes, and lattices of hexagons or
-triangles.
+"""Worlds to explore: grids, tori, cylinders, crescents, mazes, and lattices.
 
-A world is a map whose places count their slots from one common direction, so that a
-slot is a compass direction (slot 0 is north on a grid).
+A world is a map whose places count their slots from one common direction, so that a slot is a
+compass direction (slot 0 is north on a grid).
 """
 
 import math
@@ -18,23 +17,24 @@ from topomap.runtime import nx
 from topomap.runtime.checks import share, whole
 from topomap.runtime.errors import InputError
 from topomap.runtime.limits import MOST_PLACES
+from topomap.runtime.near import meant
 from topomap.worlds.senses import Move
 
-UNIT = 100  # as long is a way of a grid or of a lattice
+UNIT = 100  # the length of a way of a grid or of a lattice
 NORTH, EAST, SOUTH, WEST = range(4)
 MOVES = {NORTH: (-1, 0), EAST: (0, 1), SOUTH: (1, 0), WEST: (0, -1)}
 
 
 @dataclass(frozen=True)
 class Environment:
-    """A world, what it is called, and how it was made.
+    """A world, its name, and how it was made.
 
-    ``call`` is the part of a ``topomap generate`` call that makes it; ``shape`` its
-    rows and columns, where a route may count on them; ``notes`` go into headers. ``moves`` tells of
+    ``call`` is the part of a ``topomap generate`` call that makes it. ``shape`` is the number of
+    its rows and columns, if a route may use them; ``notes`` go into headers. ``moves`` tells for
     each gateway how far its way leads, east and north: in hundredths of a way of a grid or a
-    lattice, in metres of a network, or in its own units where that is a plane. ``points`` tells
-    where places are, in the same units, ``names`` what they are called, if that is not their label,
-    and ``north`` where slot 0 points, in degrees clockwise of north.
+    lattice, in metres of a network, or in the units of a file that uses a plane. ``points`` tells
+    where places are, in the same units. ``names`` tells the names of places, if they are not their
+    labels, and ``north`` tells where slot 0 points, in degrees clockwise of north.
     """
 
     name: str
@@ -48,16 +48,25 @@ class Environment:
     north: float = 0.0
 
     def place(self, text: str) -> Place:
-        """The place with this label. Raises InputError if there is none."""
+        """Find the place with this label.
+
+        Raises:
+            InputError: There is none.
+        """
         for place in self.map.stars:
             if label(place) == text:
                 return place
         raise InputError(f"{self.name}: there is no place {text!r}")
 
     def signed(self, rate: float, seed: int) -> "Environment":
-        """The same world with ``round(rate * n)`` of its n places carrying a sign,
-        a landmark that is the place's own name; drawn from the sorted places. Raises ValueError
-        if the rate is not from 0 to 1."""
+        """The same world, in which ``round(rate * n)`` of its n places have a sign.
+
+        A sign is a landmark that is the place's own name. The places are drawn from the sorted
+        places, with the seed.
+
+        Raises:
+            ValueError: The rate is not from 0 to 1.
+        """
         rate = share("signs", rate)
         places = sorted(self.map.stars)
         drawn = random.Random(seed).sample(places, round(rate * len(places)))
@@ -66,7 +75,7 @@ class Environment:
 
 
 def plain(number: float) -> str:
-    """A number as the command line takes it, exactly."""
+    """Write a number exactly, as the command line accepts it."""
     return str(int(number)) if number == int(number) else repr(number)
 
 
@@ -78,7 +87,7 @@ def _term(place: Place) -> str:
 
 
 def world(slots: int, links: Mapping[Gateway, Gateway]) -> TopologicalMap:
-    """The map in which every gateway is linked, places in order."""
+    """Make the map in which every gateway is linked, with the places in order."""
     if not links:
         raise InputError("an environment needs a way between two places")
     stars: dict[Place, set[int]] = {place: set() for place in sorted({p for p, _ in links})}
@@ -88,10 +97,12 @@ def world(slots: int, links: Mapping[Gateway, Gateway]) -> TopologicalMap:
 
 
 def grid(rows: int, columns: int, kind: str = "grid") -> Environment:
-    """A grid of places (row, column), four slots, slot 0 north. On a ``cylinder`` each
-    row is a ring, on a ``torus`` each column too. With ``crescents`` each two columns, from the
-    first one, are joined by a way round their northern ends; so they are one path, which meets
-    each row twice."""
+    """Make a grid of places (row, column) with four slots, where slot 0 is north.
+
+    On a ``cylinder`` each row is a ring, and on a ``torus`` each column is a ring, too. With
+    ``crescents``, each two columns, beginning with the first, are joined by a way round their
+    northern ends; so they are one path, which meets each row twice.
+    """
     links: dict[Gateway, Gateway] = {}
     for row in range(rows):
         for column in range(columns):
@@ -116,13 +127,16 @@ def grid(rows: int, columns: int, kind: str = "grid") -> Environment:
 
 
 def _squares(links: Iterable[Gateway]) -> dict[Gateway, Move]:
-    """How far the ways of a grid lead."""
+    """The moves of the ways of a grid."""
     return {(place, slot): (UNIT * MOVES[slot][1], -UNIT * MOVES[slot][0]) for place, slot in links}
 
 
 def maze(rows: int, columns: int, thin: float, seed: int) -> Environment:
-    """A connected grid thinned with a seed: ``round(thin * n)`` of its n ways are taken
-    away in random order, those excepted on which the connection depends."""
+    """Make a connected grid from which some ways are taken away.
+
+    ``round(thin * n)`` of its n ways are taken away in a random order, with the seed, except those
+    without which it would not be connected.
+    """
     links = dict(grid(rows, columns).map.links)
     ways = world(4, links).edges()
     graph: nx.MultiGraph[Place] = nx.MultiGraph((a[0], b[0], a) for a, b in ways)
@@ -145,18 +159,22 @@ def _is_bridge(graph: "nx.MultiGraph[Any]", a: Gateway, b: Gateway) -> bool:
 
 
 def lattice(kind: str, rows: int, columns: int) -> Environment:
-    """``hexagons``: the corners of rows x columns hexagons, three ways a place;
-    ``triangles``: a triangular lattice, up to six. Six slots, 60 degrees apart, slot 0
-    at a bearing of 30 degrees."""
+    """Make a lattice with six slots, 60 degrees apart, where slot 0 is at a bearing of 30 degrees.
+
+    ``hexagons`` are the corners of rows x columns hexagons, with at most three ways at a place;
+    ``triangles`` is a triangular lattice, with at most six.
+    """
     make = nx.hexagonal_lattice_graph if kind == "hexagons" else nx.triangular_lattice_graph
     graph: nx.Graph[Any] = make(rows, columns)
     positions = nx.get_node_attributes(graph, "pos")
     ways = sorted(tuple(sorted(way)) for way in graph.edges())
 
     def bearing(here: Place, there: Place) -> float:
+        """The bearing from a place to a neighbour."""
         return flat_bearing(positions[here], positions[there])
 
     def move(here: Place, there: Place) -> Move:
+        """The move from a place to a neighbour."""
         (x, y), (to_x, to_y) = positions[here], positions[there]
         return UNIT * (to_x - x), UNIT * (to_y - y)
 
@@ -166,12 +184,12 @@ def lattice(kind: str, rows: int, columns: int) -> Environment:
 
 
 def moves_of(made: TopologicalMap, move: Callable[[Place, Place], Move]) -> dict[Gateway, Move]:
-    """How far each gateway's way leads, where that is told by the places at its ends."""
+    """The moves of the ways, if the places at their ends determine them."""
     return {out: move(out[0], end[0]) for out, end in made.links.items()}
 
 
 def flat_bearing(here: tuple[float, float], there: tuple[float, float]) -> float:
-    """Degrees clockwise of north from a point to another, x east and y north."""
+    """The bearing from a point to another one, in degrees clockwise of north (x east, y north)."""
     return math.degrees(math.atan2(there[0] - here[0], there[1] - here[1]))
 
 
@@ -181,9 +199,14 @@ def by_bearing(
     slots: int,
     north: float,
 ) -> TopologicalMap:
-    """The world of straight ways: each leaves by the slot nearest to its bearing, and
-    arrives by the opposite one; slot 0 is at ``north`` degrees clockwise of north.
-    Raises InputError naming the place where two ways fall into one slot."""
+    """Make a world of straight ways.
+
+    Each leaves by the slot nearest to its bearing, and arrives by the opposite one; slot 0 is at
+    ``north`` degrees clockwise of north.
+
+    Raises:
+        InputError: Two ways of a place have one slot; the message names the place.
+    """
     links: dict[Gateway, Gateway] = {}
     for here, there in ways:
         slot = math.floor((bearing(here, there) - north) * slots / 360 + 0.5) % slots
@@ -206,12 +229,21 @@ def _link(links: dict[Gateway, Gateway], a: Gateway, b: Gateway) -> None:
     links[a], links[b] = b, a
 
 
+KINDS = ("grid", "cylinder", "torus", "crescents", "maze", "hexagons", "triangles")
+
+
 def environment(
     kind: str, rows: int, columns: int, thin: float = 0.3, seed: int = 0
 ) -> Environment:
-    """The world of a kind: ``grid``, ``cylinder``, ``torus``, ``crescents``, ``maze`` (a
-    share ``thin`` of its ways is taken away with the seed), ``hexagons`` or ``triangles``. Raises
-    ValueError on others and on numbers that cannot be, and InputError if it is too large."""
+    """Make the world of a kind.
+
+    The kinds are ``grid``, ``cylinder``, ``torus``, ``crescents``, ``maze`` (from which the share
+    ``thin`` of the ways is taken away with the seed), ``hexagons`` and ``triangles``.
+
+    Raises:
+        ValueError: The kind is not known, or a number is out of its range.
+        InputError: The world would be too large.
+    """
     rows, columns = whole("rows", rows, 1), whole("columns", columns, 1)
     thin, seed = share("thin", thin), whole("seed", seed, 0)
     if rows * columns > MOST_PLACES:
@@ -222,5 +254,5 @@ def environment(
         return lattice(kind, rows, columns)
     if kind in ("grid", "cylinder", "torus", "crescents"):
         return grid(rows, columns, kind)
-    kinds = "grid, cylinder, torus, crescents, maze, hexagons, triangles"
-    raise ValueError(f"{kind!r} is not one of the environments {kinds}")
+    hint = f"; {near}" if (near := meant(str(kind), KINDS)) else ""
+    raise ValueError(f"{kind!r} is not one of the environments {', '.join(KINDS)}{hint}")

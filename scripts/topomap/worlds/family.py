@@ -1,7 +1,7 @@
 """Families of instances: a file that lists what to generate.
 
-A line is the arguments of ``topomap generate``, without ``-o``; ``{3..6}`` and
-``{snake,tour}`` stand for each value in turn; ``#`` begins a comment.
+A line has the arguments of ``topomap generate``, without ``-o``. ``{3..6}`` and ``{snake,tour}``
+stand for each of their values in turn; ``#`` begins a comment.
 """
 
 import itertools
@@ -19,7 +19,7 @@ _CHOICE = re.compile(r"\{([^{}]*)\}")
 
 
 def expand(file: str | Path) -> Iterator[tuple[int, list[str]]]:
-    """The generate calls of a family file, each with its line."""
+    """List the generate calls of a family file, each with its line."""
     left = MOST
     for number, line in enumerate(read_text(file).splitlines(), 1):
         pieces = _CHOICE.split(line.partition("#")[0])

@@ -1,4 +1,4 @@
-"""Worlds from files: of each format that ``readers`` knows."""
+"""Worlds from files of each format that ``readers`` knows."""
 
 import math
 from collections.abc import Iterable
@@ -14,13 +14,15 @@ from topomap.worlds.environment import Environment, plain
 from topomap.worlds.plan import Plan, Reading, Way
 from topomap.worlds.senses import Move
 
-NAMED = 5  # ways that a message names
-NARROW = 3.0  # degrees by which slots may be turned, until it is told that they are few
+NAMED = 5  # the largest number of ways in a message
+NARROW = 3.0  # degrees: if slots may be turned by less, there is a warning
 
 
 class Loaded(NamedTuple):
-    """A world from a file, what there is to warn of, the plan in the file, and the slots.
-    ``chosen`` says which slots were chosen, if they were."""
+    """A world from a file, the warnings about it, the plan in the file, and the slots.
+
+    ``chosen`` says which slots were chosen, if they were.
+    """
 
     environment: Environment
     warnings: list[str]
@@ -37,19 +39,23 @@ def load(
     straight: float | None = None,
     two_way: bool = False,
 ) -> Loaded:
-    """The world in a file.
+    """Load the world in a file.
 
     Parameters:
-        file: of one of the formats that ``readers`` knows.
-        reading: how it is to be read.
-        slots, north: the number of slots, and where slot 0 points, in degrees clockwise of north;
-            None: the fewest slots, and the best turn, at which no two exits of a place share one.
-        straight: by how many degrees two exits of a place may be off being opposite to be on one
-            path; None: those in opposite slots are on one path.
-        two_way: whether ways that can be gone one way only are taken to be two-way.
+        file: A file of one of the formats that ``readers`` knows.
+        reading: How it is to be read.
+        slots: The number of slots; None for the smallest at which no two exits of a place share
+            one.
+        north: Where slot 0 points, in degrees clockwise of north; None for the best turn.
+        straight: By how many degrees two exits of a place on one path may be off from being
+            opposite. If it is None, those in opposite slots are on one path.
+        two_way: Whether ways that can be gone one way only are taken as two-way.
+
+    Returns:
+        The world.
 
     Raises:
-        InputError: one line.
+        InputError: The file cannot be read. One line.
     """
     reading = reading or Reading()
     plan = readers.read(file, reading)
@@ -70,7 +76,7 @@ def load(
         raise InputError(f"{error} ({plan.guessed})") from None
     if slots is None and at.margin < NARROW:
         told.append(
-            f"{file}: exits are parted by {at.margin:.2g} degrees only; --slots says how many "
+            f"{file}: exits are separated by only {at.margin:.2g} degrees; --slots says how many "
             "slots there are, and --straight which exits are on one path"
         )
     world = world_of(plan, at, straight)
@@ -92,14 +98,14 @@ def load(
         plan.names,
         at.north,
     )
-    kept = plan.slots and slots is None  # the file tells them
+    kept = plan.slots and slots is None  # the slots are those of the file
     asked = slots is not None and north is not None
     chosen = None if kept or asked else f"{file}: {_chosen(at)}"
     return Loaded(made, told, plan, at, chosen)
 
 
 def _options(reading: Reading) -> list[str]:
-    """The options of a call by which a file is read so."""
+    """The options of a call with which a file is read in this way."""
     usual = Reading()
     call = [] if reading.along == usual.along else ["--along", plain(reading.along)]
     call += {None: [], True: ["--degrees"], False: ["--plane"]}[reading.degrees]
@@ -108,7 +114,7 @@ def _options(reading: Reading) -> list[str]:
 
 
 def _named(ways: Iterable[Way]) -> str:
-    """Some ways by their ends."""
+    """Name some ways by their ends."""
     names = [" to ".join(label(end.place) for end in way.ends) for way in ways]
     return ", ".join(names[:NAMED]) + (f" and {len(names) - NAMED} more" * (len(names) > NAMED))
 
@@ -122,7 +128,7 @@ def _chosen(at: Layout) -> str:
 
 
 def _moves(plan: Plan, at: Layout) -> dict[Gateway, Move]:
-    """How far each gateway's way leads, where the file tells it."""
+    """The moves of the ways, if the file tells them."""
     moves: dict[Gateway, Move] = {}
     for way in plan.ways:
         if way.move is None:

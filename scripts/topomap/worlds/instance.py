@@ -1,6 +1,6 @@
-"""Instances: one record from which name, header and facts come.
+"""Instances: one record determines name, header and facts.
 
-The same record gives the same bytes.
+The same record always gives the same bytes.
 """
 
 import re
@@ -22,8 +22,11 @@ NOTHING = Senses()
 
 @dataclass(frozen=True)
 class Instance:
-    """An exploration of an environment: its name, how it was made, what was seen, and
-    the true hypothesis; and how the environment's own map breaks the path axiom, if it does."""
+    """An exploration of an environment.
+
+    It has its name, how it was made, what was seen, the true hypothesis, and how the environment's
+    own map breaks the path axiom, if it does.
+    """
 
     name: str
     header: tuple[str, ...]
@@ -32,7 +35,7 @@ class Instance:
     fault: str | None = None
 
     def text(self) -> str:
-        """The instance file."""
+        """The text of the instance file."""
         header = (" ".join(line.split()) for line in self.header)
         return "".join(f"% {line}\n" for line in header) + "\n" + self.experience.facts()
 
@@ -51,11 +54,13 @@ def instance(
 ) -> Instance:
     """Explore an environment.
 
-    ``route`` is ``snake``, ``walk``, ``tour``, or a list of directions; ``steps`` cuts
-    it; ``start`` names the first place (default: the smallest); ``facing`` is the slot
-    of the gateway stood at first (default: the one first left by); ``signs`` is the
-    share of places that carry a sign; ``senses`` tells what is measured besides views. Raises
-    InputError on what cannot be walked, or measured.
+    ``route`` is ``snake``, ``walk``, ``tour``, or a list of directions, and ``steps`` cuts it.
+    ``start`` names the first place (by default the smallest). ``facing`` is the slot of the gateway
+    where the agent stands at first (by default the one by which it leaves). ``signs`` is the share
+    of the places that have a sign. ``senses`` tells what is measured besides views.
+
+    Raises:
+        InputError: The route cannot be walked, or what is asked for cannot be measured.
     """
     if signs:
         environment = environment.signed(signs, seed or 0)
@@ -128,8 +133,11 @@ def measured(
     senses: Senses,
     drops: Iterable[int] = (),
 ) -> tuple[Experience, tuple[DState, ...]]:
-    """What is seen and measured along a route, and the true hypothesis. Raises InputError if the
-    world is not flat, and odometry is asked for."""
+    """Find what is seen and measured along a route, and the true hypothesis.
+
+    Raises:
+        InputError: Odometry is asked for, and the world is not flat.
+    """
     seen, truth = observe(environment.map, start, route, drops)
     if not senses:
         return seen, truth
@@ -142,7 +150,7 @@ def measured(
 
 
 def _part(route: str, taken: int, steps: int | None) -> str:
-    """A route's part of an instance's name."""
+    """The part of an instance's name that tells the route."""
     if route in ("tour", "walk"):
         return f"{route}{taken}"
     word = _word(route)
@@ -152,5 +160,5 @@ def _part(route: str, taken: int, steps: int | None) -> str:
 
 
 def _word(text: str) -> str:
-    """A text as a part of a file's name."""
+    """Make a text usable as a part of the name of a file."""
     return re.sub(r"[^\w.]+", "-", text).strip("-.")

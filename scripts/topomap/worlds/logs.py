@@ -1,11 +1,13 @@
-"""Logs that somebody wrote as a table or as JSON lines: bearings in degrees or compass letters,
-which are put into slots. docs/logs-of-explorers.md tells it to users.
+"""Logs that somebody wrote as a table or as JSON lines, with bearings that are put into slots.
 
-The choice of slots. With K slots the bearings *fit* if each is less than an eighth of a slot off
-the direction of a slot. Then two exits that get opposite slots bend by less than a quarter of a
-slot, and views of one place agree whichever exit it is seen from. The fewest slots up to MOST_CLEAR
-that fit, and that part the exits of each visit, are taken. Else there are FINE slots, a tolerance,
-and pairs of exits that are nearly opposite are told to be on one path.
+Bearings are in degrees or compass letters. docs/logs-of-explorers.md explains this to users.
+
+The choice of slots is as follows. With K slots the bearings *fit* if each is less than an eighth of
+a slot off the direction of a slot. Then two exits that get opposite slots bend by less than a
+quarter of a slot, and views of one place agree, whichever exit it is seen from. The smallest number
+of slots up to MOST_CLEAR that fits, and that separates the exits of each visit, is taken. If there
+is none, there are FINE slots and a tolerance, and the instance tells of pairs of exits that are
+nearly opposite that they are on one path.
 """
 
 import math
@@ -29,14 +31,14 @@ from topomap.worlds.environment import plain
 from topomap.worlds.plan import Exit, Way
 from topomap.worlds.rows import NO, YES, Row, number, rows_of
 
-MOST_CLEAR, FINE = 16, MOST  # slots that bearings may fit; and where they fit none
-CLEAR = 1 / 8  # so many slots a bearing may be off at most
-OFF = 10.0  # degrees that the exit by which one arrived may be off, unless it is told
-UNMEASURED = 5  # degrees that bearings are taken to be off if nothing tells
-MISREAD = 20.0  # if bearings of one exit differ by more degrees, it is no error of measuring
-BENDS = (10.0, 60.0)  # the least and the greatest bend that may be the limit of straight on
-SHOWN = 20  # warnings that are told
-CENTI = 0.01  # the unit of lengths, if some are fractions
+MOST_CLEAR, FINE = 16, MOST  # the most slots that bearings may fit; and the slots if they fit none
+CLEAR = 1 / 8  # by how many slots a bearing may be off
+OFF = 10.0  # degrees: by how much the exit of arrival may be off, if it is not told
+UNMEASURED = 5  # degrees: by how much bearings are taken to be off if nothing is known
+MISREAD = 20.0  # degrees: a larger difference is not an error of measurement
+BENDS = (10.0, 60.0)  # degrees: the range of the limit for two exits to be on one path
+SHOWN = 20  # the largest number of warnings
+CENTI = 0.01  # the unit of lengths if some are fractions
 LETTERS = [
     *("N", "NNE", "NE", "ENE", "E", "ESE", "SE", "SSE"),
     *("S", "SSW", "SW", "WSW", "W", "WNW", "NW", "NNW"),
@@ -49,12 +51,13 @@ FACING = ("back", "ahead")
 class Options:
     """How a log is to be read.
 
-    ``slots`` and ``tolerance`` are those of the instance, None to be chosen; ``frame`` says from
-    where bearings count, None if the log is to tell; ``facing`` where 0 is in the frame of the
-    arrival, at the way back or ahead; ``straight_ways`` by how many degrees ways may bend from one
-    place to the next, if the exits of arrival are to be found by that; ``straight`` by how many
-    degrees two exits of a place that are on one path may be off being opposite, None to be chosen;
-    ``unit`` how much of the log is a unit of the instance, None to be chosen.
+    ``slots`` and ``tolerance`` are those of the instance; None if they are to be chosen. ``frame``
+    tells from where bearings count; None if the log tells it. ``facing`` tells where 0 is in the
+    frame of the arrival, at the way back or ahead. ``straight_ways`` is the number of degrees by
+    which ways may bend from one place to the next, if the exits of arrival are to be found by that.
+    ``straight`` is the number of degrees by which two exits of a place on one path may be off from
+    being opposite; None if it is to be chosen. ``unit`` is the length of the log that is one unit
+    of the instance; None if it is to be chosen.
     """
 
     slots: int | None = None
@@ -81,11 +84,14 @@ class Options:
 
 @dataclass(frozen=True)
 class Log:
-    """A log that was read: the ``experience``, and its ``name``; the ``header`` of the instance
-    file; what was ``chosen``, in one line, None if nothing was; and ``warnings``, one line each.
-    ``frame``, ``slots`` (of the experience), ``north`` (degrees clockwise of north of slot 0, None
-    if bearings are from the arrival), ``tolerance``, ``straight`` (degrees, None if exits in
-    opposite slots are on one path) and ``unit`` are those by which it was read."""
+    """A log that was read.
+
+    It has the ``experience`` and its ``name``; the ``header`` of the instance file; what was
+    ``chosen``, in one line, or None; and ``warnings``, of one line each. It was read with
+    ``frame``, ``slots`` (of the experience), ``north`` (where slot 0 points, in degrees clockwise
+    of north; None if bearings count from the arrival), ``tolerance``, ``straight`` (degrees; None
+    if exits in opposite slots are on one path) and ``unit``.
+    """
 
     name: str
     header: tuple[str, ...]
@@ -108,7 +114,7 @@ class Log:
         return self.experience.tolerance
 
     def document(self) -> dict[str, Any]:
-        """What ``topomap log --json`` writes of it, but for the file that is written."""
+        """The log as ``topomap log --json`` writes it, without the name of the file."""
         return {
             "name": self.name,
             "header": self.header,
@@ -125,14 +131,17 @@ class Log:
         }
 
     def text(self) -> str:
-        """The instance file."""
+        """The text of the instance file."""
         header = (" ".join(line.split()) for line in self.header)
         return "".join(f"% {line}\n" for line in header) + "\n" + self.experience.facts()
 
 
 class Visit(NamedTuple):
-    """A row whose bearings are read: the exits, and which of them is taken, and which one is that
-    of arrival, None where that is not told."""
+    """A row whose bearings are read.
+
+    It has the exits, the exit that is taken and the exit of arrival; the latter are None if they
+    are not told.
+    """
 
     row: Row
     exits: tuple[float, ...]
@@ -141,8 +150,11 @@ class Visit(NamedTuple):
 
 
 class Seen(NamedTuple):
-    """The bearings of a visit in slots 0 up to 360 degrees: those of all exits, that of the exit
-    stood at, and that of the exit taken. In the frame of the arrival the exit stood at is at 0."""
+    """The bearings of a visit, from 0 up to 360 degrees.
+
+    They are those of all exits, of the exit where one stands, and of the exit that is taken. In the
+    frame of the arrival the exit where one stands is at 0.
+    """
 
     row: Row
     exits: tuple[float, ...]
@@ -150,14 +162,17 @@ class Seen(NamedTuple):
     taken: float | None
 
     def ordered(self) -> list[float]:
-        """How far each exit is from that stood at, clockwise, sorted."""
+        """How far clockwise each exit is from the one where one stands, sorted."""
         return sorted((bearing - self.stood) % 360 for bearing in self.exits)
 
 
 class Again(NamedTuple):
-    """A visit that is surely one to the place of an earlier one, which stands at exit ``at`` of
-    it, counted clockwise from the one stood at first. ``off`` is by how many degrees the bearings
-    of one exit differ at most, None if there are not as many exits."""
+    """A visit that is certainly to the place of an earlier one.
+
+    ``at`` is its exit, counted clockwise from the exit where one stood first. ``off`` is the
+    largest difference between two bearings of one exit, in degrees; None if the numbers of exits
+    differ.
+    """
 
     step: int
     first: int
@@ -166,8 +181,11 @@ class Again(NamedTuple):
 
 
 class Choice(NamedTuple):
-    """What bearings are put into: slots, the tolerance, the limit of straight on in degrees (None:
-    opposite slots), and in words what was chosen, None if nothing was."""
+    """What bearings are put into.
+
+    It has the slots, the tolerance, the limit for two exits to be on one path, in degrees (None:
+    opposite slots are), and what was chosen, in words, or None.
+    """
 
     at: Layout
     tolerance: int
@@ -176,7 +194,12 @@ class Choice(NamedTuple):
 
 
 def load(file: str | Path, options: Options) -> Log:
-    """The log in a file. Raises InputError, one line with file, line, step and fault."""
+    """Load the log in a file.
+
+    Raises:
+        InputError: The file cannot be read, or is not a log. One line with file, line, step and
+            fault.
+    """
     if options.slots is not None and (fault := slots_fault(options.slots)):
         raise InputError(f"{file}: {fault}")
     rows = rows_of(str(file), read_text(file))
@@ -226,8 +249,13 @@ def load(file: str | Path, options: Options) -> Log:
 
 
 def _frame(rows: Sequence[Row]) -> str:
-    """From where bearings count: letters are of the compass, and numbers count from the arrival.
-    Raises InputError if there are both."""
+    """Find out from where bearings count.
+
+    Letters are of the compass, and numbers count from the arrival.
+
+    Raises:
+        InputError: There are both.
+    """
     kinds: dict[bool, tuple[Row, str]] = {}
     for row in rows:
         for name in ("exits", "taken", "arrived"):
@@ -243,7 +271,7 @@ def _frame(rows: Sequence[Row]) -> str:
 
 
 def _bearing(row: Row, text: str, frame: str) -> float:
-    """A bearing, 0 up to 360 degrees."""
+    """Read a bearing as degrees from 0 up to 360."""
     word = text.upper()
     if word in LETTERS:
         if frame != "north":
@@ -258,11 +286,11 @@ def _bearing(row: Row, text: str, frame: str) -> float:
         )
     if not -360 <= value <= 360:
         raise row.fault(f"{quoted(text)} is no bearing: it is not from -360 to 360 degrees")
-    return value % 360 % 360  # a tiny negative number leaves 360
+    return value % 360 % 360  # for a tiny negative number the first % gives 360
 
 
 def _visit(row: Row, frame: str) -> Visit:
-    """The bearings of a row."""
+    """Read the bearings of a row."""
     exits = tuple(_bearing(row, text, frame) for text in row.cells.get("exits", ()))
     if not exits:
         raise row.fault("exits: there are none; the exit by which one arrived is one of them")
@@ -274,7 +302,7 @@ def _visit(row: Row, frame: str) -> Visit:
     ends = sorted(exits)
     for one, other in zip(ends, [*ends[1:], ends[0] + 360], strict=True):
         if len(exits) > 1 and other - one < 1e-6:
-            raise row.fault(f"exits: {_degrees(one)} stands there twice")
+            raise row.fault(f"exits: {_degrees(one)} occurs twice")
     told = []
     for name in ("taken", "arrived"):
         text = row.one(name)
@@ -299,8 +327,10 @@ def _apart(one: float, other: float) -> float:
 
 
 def _nearest(exits: Sequence[float], bearing: float, most: float) -> int | None:
-    """Which exit is nearest to a bearing, if it is off by so many degrees at most and no other one
-    is as near; else None."""
+    """The exit nearest to a bearing, or None.
+
+    It may be off by at most so many degrees, and no other exit may be as near.
+    """
     off = sorted((_apart(one, bearing), number) for number, one in enumerate(exits))
     if off[0][0] > most or (len(off) > 1 and off[1][0] - off[0][0] < 1e-6):
         return None
@@ -308,7 +338,7 @@ def _nearest(exits: Sequence[float], bearing: float, most: float) -> int | None:
 
 
 def _demand_order(visits: Sequence[Visit]) -> None:
-    """Demand that each visit is left, unless it is the last one of its log, and seen again."""
+    """Check that each visit is left, or looked at again, unless it is the last one of its log."""
     if visits[0].row.flag("look"):
         raise visits[0].row.fault("look: there is no earlier look")
     for here, after in pairwise(visits):
@@ -329,7 +359,7 @@ def _demand_order(visits: Sequence[Visit]) -> None:
 
 
 def _seen(visits: Sequence[Visit], frame: str, options: Options) -> list[Seen]:
-    """The bearings of all visits, and at which exit one stands."""
+    """The bearings of all visits, and the exit where one stands at each."""
     made: list[Seen] = []
     stood = 0.0
     for step, visit in enumerate(visits):
@@ -363,8 +393,11 @@ def _seen(visits: Sequence[Visit], frame: str, options: Options) -> list[Seen]:
 
 
 def _first_stood(visits: Sequence[Visit], step: int) -> int:
-    """The exit stood at where a log begins: the one by which the place is left, after more looks
-    perhaps; if it is not left, the first one that is told."""
+    """The exit where one stands when a log begins.
+
+    It is the one by which the place is left, perhaps after more looks; if the place is not left, it
+    is the first exit.
+    """
     last = step
     while last + 1 < len(visits) and visits[last + 1].row.flag("look"):
         last += 1
@@ -394,10 +427,12 @@ def _by_straight_way(before: Visit, here: Visit, most: float | None) -> int:
 
 
 def _certain(seen: Sequence[Seen], frame: str) -> Iterator[Again]:
-    """The visits that are surely to places visited before, because known ways lead there: by the
-    way back, say. Loops are not closed for that. A second look is such a visit, too."""
+    """The visits that are certainly to places visited before, because known ways lead there.
+
+    An example is the way back. No loop is closed for this. A second look is such a visit, too.
+    """
     links: dict[tuple[int, int], tuple[int, int]] = {}
-    place, at = 0, 0  # the first visit of the place, and the exit stood at
+    place, at = 0, 0  # the first visit of the place, and the exit where one stands
     for step, (before, here) in enumerate(pairwise(seen), 1):
         if here.row.flag("start"):
             place, at = step, 0
@@ -419,8 +454,10 @@ def _certain(seen: Sequence[Seen], frame: str) -> Iterator[Again]:
 
 
 def _differ(first: Seen, at: int, here: Seen, frame: str) -> float | None:
-    """By how many degrees two views of one place differ at most, seen from exit ``at`` of the
-    first one; None if there are not as many exits."""
+    """By how many degrees two views of one place differ at most.
+
+    They are seen from exit ``at`` of the first one. It is None if the numbers of exits differ.
+    """
     star, view = first.ordered(), here.ordered()
     if len(star) != len(view):
         return None
@@ -434,12 +471,16 @@ def _differ(first: Seen, at: int, here: Seen, frame: str) -> float | None:
 def _choose(
     file: str, seen: Sequence[Seen], again: Sequence[Again], frame: str, options: Options
 ) -> Choice:
-    """The slots that bearings are put into. Raises InputError if two exits of a visit share one."""
+    """Choose the slots for the bearings.
+
+    Raises:
+        InputError: Two exits of a visit share a slot.
+    """
     ways, exits = _ways(seen)
     bearings = sorted({bearing for visit in seen for bearing in visit.exits})
     told = options.tolerance
     tries = [*range(FEWEST, MOST_CLEAR + 1, 2)] if options.slots is None else [options.slots]
-    if told and not options.slots:  # so many slots are wanted that they are so many degrees
+    if told and not options.slots:  # with the given slots, the tolerance is told in degrees
         tries = []
     for slots in tries:
         at, off = _fit(bearings, slots, frame)
@@ -470,7 +511,7 @@ def _choose(
         width = 360 / slots
         whole = all(abs(one / width - round(one / width)) < 1e-6 for one in bearings)
         off = 2 * max(measured) if measured else UNMEASURED
-        # Three bearings are rounded, each by half a slot at most, where two views are compared.
+        # To compare two views, three bearings are rounded, each by half a slot at most.
         tolerance = math.ceil(off / width - 1e-6) if whole else math.floor(off / width + 1.5)
         why = (
             f"twice the {_rounded_up(max(measured))} degrees by which bearings of one exit differ"
@@ -486,7 +527,7 @@ def _choose(
 
 
 def _said(said: Sequence[str], options: Options) -> str | None:
-    """What was chosen, and how to choose otherwise."""
+    """Say what was chosen, and how to choose something else."""
     if not said:
         return None
     names = [name for name in ("slots", "tolerance") if getattr(options, name) is None]
@@ -503,7 +544,7 @@ def _rounded_up(degrees: float) -> str:
 def _ways(
     seen: Sequence[Seen],
 ) -> tuple[tuple[Way, ...], dict[object, list[tuple[float, int, int]]]]:
-    """Each visit as a place of its own, whose ways lead nowhere else: what ``courses`` takes."""
+    """Each visit as a place of its own, whose ways lead nowhere else, for ``courses``."""
     ways = tuple(
         Way((Exit((step,), bearing), Exit((step, number), 0.0)))
         for step, visit in enumerate(seen)
@@ -513,8 +554,13 @@ def _ways(
 
 
 def _fit(bearings: Sequence[float], slots: int, frame: str) -> tuple[Layout, float]:
-    """So many slots, turned so that bearings are off the least, and by how many degrees they are
-    then off at most. From the arrival slots are not turned."""
+    """So many slots, turned so that bearings are off as little as possible.
+
+    Slots are not turned if bearings count from the arrival.
+
+    Returns:
+        The slots, and by how many degrees bearings are off at most.
+    """
     width = 360 / slots
     rests = sorted({bearing % width for bearing in bearings})
     if frame == "arrival":
@@ -529,10 +575,12 @@ def _fit(bearings: Sequence[float], slots: int, frame: str) -> tuple[Layout, flo
 
 
 def _limit(seen: Sequence[Seen], ways: tuple[Way, ...]) -> float:
-    """The middle of the widest gap between the bends of exits that are most nearly opposite, within
-    BENDS: where the fewest pairs are nearly on the other side."""
+    """The middle of the widest gap between the bends of exits that are most nearly opposite.
+
+    It lies within BENDS. So the fewest pairs are near the limit.
+    """
     bends = {*BENDS}
-    fine = Layout(10**6, 0.0, 0.0)  # so that slots tell the bearings
+    fine = Layout(10**6, 0.0, 0.0)  # with so many slots, slots are as good as bearings
     for out, other in across_of(ways, fine, BENDS[1]).items():
         bend = abs((out[1] - other[1]) * 360 / fine.slots % 360 - 180)
         if BENDS[0] < bend < BENDS[1]:
@@ -542,7 +590,7 @@ def _limit(seen: Sequence[Seen], ways: tuple[Way, ...]) -> float:
 
 
 def _unit(file: str, rows: Sequence[Row], options: Options) -> tuple[float, str | None]:
-    """How much of the log is a unit of the instance, and in words if it was chosen."""
+    """Find which length of the log is one unit of the instance, and say so if it was chosen."""
     if options.unit is not None:
         return options.unit, None
     values = (row.number(name) for row in rows for name in ("length", "east", "north"))
@@ -552,7 +600,11 @@ def _unit(file: str, rows: Sequence[Row], options: Options) -> tuple[float, str 
 
 
 def _experience(seen: Sequence[Seen], frame: str, choice: Choice, unit: float) -> Experience:
-    """The experience. Raises InputError if something cannot be noted, or cannot be."""
+    """Make the experience.
+
+    Raises:
+        InputError: Something cannot be expressed, or is impossible.
+    """
     at = choice.at
     pairs: list[list[tuple[int, int]]] = [[] for _ in seen]
     stood = [at.slot(visit.stood) for visit in seen]
@@ -621,7 +673,7 @@ def _length(row: Row, unit: float) -> int | None:
 
 
 def _shift(row: Row, unit: float) -> tuple[int, int] | None:
-    """How far the way leads that is taken, in units."""
+    """How far the way that is taken leads, in units."""
     east, north = row.number("east"), row.number("north")
     if east is None and north is None:
         return None
@@ -632,8 +684,10 @@ def _shift(row: Row, unit: float) -> tuple[int, int] | None:
 
 
 def _term(row: Row, name: str, text: str) -> str:
-    """A landmark, or the name of a marker, as a term of clingo: as it stands if it is one, else as
-    a text in quotes."""
+    """Write a landmark, or the name of a marker, as a term of clingo.
+
+    If it is a term already, it stays as it is; otherwise it becomes a text in quotes.
+    """
     try:
         return spelt(text)
     except ValueError:
@@ -646,7 +700,7 @@ def _term(row: Row, name: str, text: str) -> str:
 
 
 def _is_plain(text: str) -> bool:
-    """Whether a text can be written to a file, and is of one line or more of what is printed."""
+    """Tell whether a text can be written to a file, and has only printable characters and lines."""
     try:
         text.encode()
     except UnicodeEncodeError:

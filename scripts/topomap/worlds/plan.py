@@ -1,4 +1,5 @@
-"""Plans: what a file tells of a world, places and the ways between them with their directions.
+"""Plans: what a file tells of a world, as places and the ways between them, with directions.
+
 ``courses`` makes a world of a plan, and chooses the slots.
 """
 
@@ -8,11 +9,11 @@ from typing import NamedTuple
 
 from topomap.model.topology import Place
 
-Point = tuple[float, float]  # east and north, in metres or in a unit of the file's own
+Point = tuple[float, float]  # east and north, in metres or in the unit of the file
 
 
 class Exit(NamedTuple):
-    """Where a way leaves a place, and in which direction: degrees clockwise of north."""
+    """Where a way leaves a place, and in which direction, in degrees clockwise of north."""
 
     place: Place
     bearing: float
@@ -21,9 +22,9 @@ class Exit(NamedTuple):
 class Way(NamedTuple):
     """A way between two places, or from a place back to itself.
 
-    ``ends`` are its two exits; ``move`` is how far it leads from the first place to the second,
-    east and north, and ``length`` how long it is, both None if the file does not tell. ``one_way``
-    says that it can be gone from the first place to the second only.
+    ``ends`` are its two exits. ``move`` is how far it leads from the first place to the second,
+    east and north, and ``length`` is how long it is; both are None if the file does not tell.
+    ``one_way`` tells that it can be gone only from the first place to the second.
     """
 
     ends: tuple[Exit, Exit]
@@ -36,13 +37,14 @@ class Way(NamedTuple):
 class Plan:
     """What a file tells of a world.
 
-    ``points`` holds where places are, as far as that is told; ``landmarks`` what is recognised at a
-    place, as terms of clingo; ``names`` what a place is called, if that is not its own name.
-    ``slots`` is the number of directions that the file knows, all ways leading in one of them, slot
-    0 in the direction ``north``, in degrees clockwise of north; None if bearings may be any.
-    ``straight`` holds the pairs of exits of a place that are on one path; None if opposite ones
-    are. ``notes`` go into the header of an instance, and ``told`` are warnings, each one line that
-    names the file; ``guessed`` says what the coordinates were taken for, if the file does not tell.
+    ``points`` tells where places are, as far as that is known. ``landmarks`` has what is recognised
+    at a place, as terms of clingo. ``names`` tells how a place is called, if that is not its own
+    name. ``slots`` is the number of directions in the file, if all ways lead in one of them, and
+    slot 0 has the direction ``north``, in degrees clockwise of north; it is None if bearings may be
+    any. ``straight`` has the pairs of exits of a place that are on one path; it is None if opposite
+    ones are. ``notes`` go into the header of an instance. ``told`` has warnings of one line each,
+    which name the file. ``guessed`` tells what the coordinates were taken for, if the file does not
+    tell it.
     """
 
     name: str
@@ -62,11 +64,12 @@ class Plan:
 class Reading:
     """How a file is to be read.
 
-    ``along`` says how far along a bent way the point is to which its bearing at an end is taken, in
-    metres or units; ``degrees`` whether coordinates are longitude and latitude, None if the file is
-    to tell; ``loops`` whether ways back to their own place are kept; ``landmarks`` whether the
-    names of places are their landmarks; ``radius`` within which junctions of a raster are one, in
-    metres, None for a guess by the width of the corridors.
+    ``along`` is how far along a bent way the point is that gives its bearing at an end, in metres
+    or units. ``degrees`` tells whether coordinates are longitude and latitude; None if the file
+    tells it. ``loops`` tells whether ways back to their own place are kept, and ``landmarks``
+    whether the names of places are their landmarks. ``radius`` is the distance within which
+    junctions of a raster are one place, in metres; None if it is estimated from the width of the
+    corridors.
     """
 
     along: float = 10.0

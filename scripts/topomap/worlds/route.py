@@ -16,8 +16,11 @@ COMPASS = {
 
 
 def snake(environment: Environment) -> list[int]:
-    """The paper's exploration (section IV): walk the rows from the north-west corner,
-    in alternate directions, then the columns from where the last row ends."""
+    """The paper's exploration (section IV).
+
+    It walks along the rows from the north-west corner, in alternate directions, and then along the
+    columns from where the last row ends.
+    """
     if environment.shape is None:
         raise InputError(f"{environment.name}: a snake needs rows and columns")
     rows, columns = environment.shape
@@ -36,8 +39,10 @@ def _sweep(lanes: int, length: int, first: int, second: int, across: int) -> lis
 
 
 def letters(text: str, slots: int) -> list[int]:
-    """Slots of a route given as compass letters (4 or 8 slots) or as numbers: words
-    apart by commas; a word that is no direction is read letter by letter."""
+    """Read the slots of a route, given as compass letters (4 or 8 slots) or as numbers.
+
+    Words are separated by commas. A word that is not a direction is read letter by letter.
+    """
     words = [word.strip() for word in text.split(",")]
     if all(re.fullmatch("[0-9]{1,9}", word) for word in words):
         return [int(word) for word in words]
@@ -53,7 +58,7 @@ def letters(text: str, slots: int) -> list[int]:
         for direction in [word] if word in names or not word else word:
             if direction not in names:
                 raise InputError(
-                    f"route {shown!r}: step {len(route) + 1}: {direction!r} is none of "
+                    f"route {shown!r}: step {len(route) + 1}: {direction!r} is not one of "
                     + " ".join(names)
                 )
             route.append(names.index(direction))
@@ -61,7 +66,7 @@ def letters(text: str, slots: int) -> list[int]:
 
 
 def walk(world: TopologicalMap, start: Place, seed: int) -> Iterator[int]:
-    """An endless random walk: at each place any way, also the way back."""
+    """An endless random walk, which takes any way at each place, also the way back."""
     generator = random.Random(seed)
     place = start
     while True:
@@ -73,8 +78,11 @@ def walk(world: TopologicalMap, start: Place, seed: int) -> Iterator[int]:
 def checked(
     world: TopologicalMap, start: Place, route: Iterator[int] | list[int], steps: int | None
 ) -> list[int]:
-    """The first ``steps`` slots of a route (all without), each of which is a way from
-    where the walk then is. Raises InputError naming the step that is none."""
+    """The first ``steps`` slots of a route (by default all), each of which must be a way.
+
+    Raises:
+        InputError: A step is not; the message names it.
+    """
     place = start
     checked = []
     for step, slot in enumerate(itertools.islice(route, steps), 1):

@@ -1,10 +1,10 @@
-"""The rows of a log that somebody wrote as a table, CSV, or as JSON lines: one row for each visit.
+"""The rows of a log that somebody wrote as a table (CSV) or as JSON lines.
 
-Which of both it is, the content tells. Each cell is a list of texts, whatever it was written as.
+There is one row for each visit. The content tells which format it is. Each cell is a list of texts,
+in either format.
 """
 
 import csv
-import difflib
 import io
 import json
 import re
@@ -15,6 +15,7 @@ from typing import Any, NoReturn
 from topomap.model.terms import quoted
 from topomap.runtime.errors import InputError
 from topomap.runtime.limits import MOST_STEPS
+from topomap.runtime.near import meant
 
 COLUMNS = {
     "exits": "the bearings of the exits that are seen",
@@ -23,7 +24,7 @@ COLUMNS = {
     "length": "how long the way is that is taken",
     "east": "how far to the east the way that is taken leads",
     "north": "how far to the north it leads",
-    "displacement": "both, two numbers",
+    "displacement": "both of these, as two numbers",
     "landmarks": "what is recognised at the place",
     "drop": "markers that are put down",
     "pick": "markers that are taken up",
@@ -41,7 +42,7 @@ NO, YES = {"", "no", "false", "0"}, {"yes", "true", "1", "x"}
 
 @dataclass(frozen=True)
 class Row:
-    """A row: the line where it begins, the number of its visit, and its cells."""
+    """A row: the line in which it begins, the number of its visit, and its cells."""
 
     file: str
     line: int
@@ -49,11 +50,11 @@ class Row:
     cells: dict[str, list[str]]
 
     def fault(self, said: str) -> InputError:
-        """A fault of this row, in one line."""
+        """The error about a fault of this row, in one line."""
         return InputError(f"{self.file}:{self.line}: step {self.step}: {said}")
 
     def one(self, name: str) -> str | None:
-        """The one value of a cell; None if it is empty."""
+        """The only value of a cell; None if it is empty."""
         values = self.cells.get(name, [])
         if len(values) > 1:
             told = quoted(" ".join(values))
@@ -79,7 +80,7 @@ class Row:
 
 
 def number(text: str) -> float | None:
-    """A finite number, as people write it; None if a text is none."""
+    """Read a finite number as people write it; None if a text is none."""
     if len(text) > 40 or not re.fullmatch(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?", text, re.ASCII):
         return None
     value = float(text)
@@ -87,7 +88,11 @@ def number(text: str) -> float | None:
 
 
 def rows_of(file: str, text: str) -> list[Row]:
-    """The rows of a log. Raises InputError, one line, which names the line and the step."""
+    """Read the rows of a log.
+
+    Raises:
+        InputError: It has a fault. One line, which names the line and the step.
+    """
     first = text.lstrip()[:1]
     if first == "[":
         raise InputError(f"{file}: a JSON list; JSON lines are wanted, one object a line")
@@ -99,7 +104,7 @@ def rows_of(file: str, text: str) -> list[Row]:
         if both := cells.pop("displacement", None):
             if len(both) != 2 or {"east", "north"} & cells.keys():
                 raise row.fault(
-                    "displacement: two numbers are wanted, east and north, in one column"
+                    "displacement: there must be two numbers, east and north, in one column"
                 )
             cells |= {"east": both[:1], "north": both[1:]}
         made.append(row)
@@ -109,7 +114,7 @@ def rows_of(file: str, text: str) -> list[Row]:
 
 
 def _table(file: str, text: str) -> Iterator[tuple[int, dict[str, list[str]]]]:
-    """The cells of each row of CSV, with the line where the row begins."""
+    """The cells of each row of CSV, with the line in which the row begins."""
     lines = io.StringIO(text, newline="")
     start = next((line for line in io.StringIO(text, newline="") if line.strip()), "")
     delimiter = max(DELIMITERS, key=start.count)
@@ -145,31 +150,35 @@ def _table(file: str, text: str) -> Iterator[tuple[int, dict[str, list[str]]]]:
 
 
 def _demand_columns(where: str, names: Iterable[str]) -> None:
-    """Demand that each name is one of a column, and stands there once."""
+    """Check that each name is the name of a column, and stands there once."""
     seen: set[str] = set()
     for name in names:
         if name not in COLUMNS:
-            near = difflib.get_close_matches(name[:20], COLUMNS, 1)
-            meant = f"did you mean {near[0]}?" if near else f"known are {', '.join(COLUMNS)}"
-            raise InputError(f"{where}: column {quoted(name)} is not known; {meant}")
+            hint = meant(name, COLUMNS) or f"known are {', '.join(COLUMNS)}"
+            raise InputError(f"{where}: column {quoted(name)} is not known; {hint}")
         if name in seen:
-            raise InputError(f"{where}: column {name} stands there twice")
+            raise InputError(f"{where}: column {name} occurs twice")
         seen.add(name)
     if "exits" not in seen:
         raise InputError(f"{where}: there is no column exits")
 
 
 def _pointed(name: str, text: str, delimiter: str) -> str:
-    """A cell in which numbers have points, where a comma may stand for one: in a table whose
-    columns are not parted by commas."""
+    """Write the numbers of a cell with decimal points.
+
+    They may have decimal commas in a table whose columns are not separated by commas.
+    """
     if delimiter == "," or name not in (*BEARINGS, "length", "east", "north"):
         return text
     return re.sub(r"(?<=\d),(?=\d)", ".", text)
 
 
 def _split(name: str, text: str, commas: bool = True) -> list[str]:
-    """The values in a cell. A comma parts bearings only where a number cannot have one, as in a
-    table whose columns are parted by commas."""
+    """Split a cell into its values.
+
+    A comma separates bearings only if it cannot be part of a number, as in a table whose columns
+    are separated by commas.
+    """
     if name in BEARINGS:
         return re.split(r"[\s;|/,]+" if commas else r"[\s;|/]+", text.strip(" ;|/,\t\n\r"))
     if name in LISTS:
@@ -199,7 +208,7 @@ def _json_lines(file: str, text: str) -> Iterator[tuple[int, dict[str, list[str]
 
 
 class _Pairs(list[tuple[str, Any]]):
-    """A JSON object as it is written, whose names may stand there twice."""
+    """A JSON object as it is written, in which a name may occur twice."""
 
 
 def _refused(constant: str) -> NoReturn:
@@ -207,7 +216,7 @@ def _refused(constant: str) -> NoReturn:
 
 
 def _texts(where: str, name: str, value: Any) -> list[str]:
-    """A value of JSON as a cell. What stands in a list is taken as it is."""
+    """Read a value of JSON as a cell; the items of a list are taken as they are."""
     if value is None or value is False:
         return []
     if value is True:
@@ -221,4 +230,4 @@ def _texts(where: str, name: str, value: Any) -> list[str]:
             texts = [one if isinstance(one, str) else repr(one) for one in value]
             return [one.strip() for one in texts if one.strip()]
         raise InputError(f"{where}: a list holds texts and numbers only")
-    raise InputError(f"{where}: an object is no value here")
+    raise InputError(f"{where}: an object is not a value here")

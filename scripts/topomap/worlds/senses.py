@@ -11,15 +11,18 @@ from topomap.runtime.errors import InputError
 from topomap.runtime.limits import DRIFT, STRETCH
 
 Move = tuple[float, float]  # east and north, from one end of a way to the other
-CLOSE = 1e-6  # of the longest way: sums of moves that differ by less are equal
+CLOSE = 1e-6  # sums of moves that differ by less, as a share of the longest way, are equal
 
 
 @dataclass(frozen=True)
 class Senses:
-    """What is measured. ``odometry`` is the largest error of a shift, in percent of the way, or
-    None if there is no odometry; the errors are drawn with ``seed``. Who reads the measures takes
-    shifts to be wrong by ``drift`` percent at most, and lengths by ``stretch`` percent; None for
-    the usual, or as much as ``odometry`` where that is more."""
+    """What is measured.
+
+    ``odometry`` is the largest error of a shift, in percent of the way, or None without odometry;
+    the errors are drawn with ``seed``. Those who use the measurements take shifts to be wrong by at
+    most ``drift`` percent, and lengths by ``stretch`` percent. If these are None, they are the
+    usual ones, or as large as ``odometry`` if that is larger.
+    """
 
     compass: bool = False
     odometry: float | None = None
@@ -33,7 +36,7 @@ class Senses:
         return self.compass or self.lengths or self.odometry is not None
 
     def call(self) -> list[str]:
-        """The part of a call of ``topomap generate`` that asks for it."""
+        """The part of a call of ``topomap generate`` that asks for these measurements."""
         words = ["--compass"] * self.compass + ["--lengths"] * self.lengths
         return [
             *words,
@@ -41,12 +44,12 @@ class Senses:
         ]
 
     def parts(self) -> list[str]:
-        """The same as parts of the name of an instance."""
+        """The measurements as parts of the name of an instance."""
         words = ["compass"] * self.compass + ["lengths"] * self.lengths
         return words + ([] if self.odometry is None else [f"odometry{self.odometry:g}"])
 
     def notes(self) -> list[str]:
-        """The same as lines of the header of an instance."""
+        """The measurements as lines of the header of an instance."""
         told = ["compass: after each step"] * self.compass
         told += ["lengths: of each step"] * self.lengths
         if self.odometry is not None:
@@ -65,11 +68,14 @@ class Senses:
         """The experience of a walk, with what is measured on it.
 
         Parameters:
-            experience: what was seen.
-            dstates: the gateway stood at after each step, from 0, in the world, whose slots are
+            experience: What was seen.
+            dstates: The gateway of the agent after each step, from 0, in the world, whose slots are
                 those of the compass.
-            route: the slot by which each step left.
-            moves: how far each gateway's way leads, in whole units or nearly so.
+            route: The slot by which each step left.
+            moves: How far the way of each gateway leads, in whole units or nearly so.
+
+        Returns:
+            The experience with the measurements.
         """
         if not self:
             return experience
@@ -99,9 +105,11 @@ class Senses:
         return max(DRIFT, math.ceil(self.odometry or 0))
 
     def _shift(self, step: int, move: Move) -> tuple[int, int]:
-        """A move as it is measured. With errors of at most p/(1+2p) of |X|+|Y| in each direction,
-        for the share p, each is at most p of what is measured as |X|+|Y|; so the truth stays
-        consistent with a drift of p."""
+        """Measure a move.
+
+        With errors of at most p/(1+2p) of |X|+|Y| in each direction, for the share p, each error is
+        at most p of the measured |X|+|Y|. So the truth stays consistent with a drift of p.
+        """
         assert self.odometry is not None
         x, y = map(round, move)
         most = int(self.odometry * (abs(x) + abs(y)) / (100 + 2 * self.odometry))
@@ -110,8 +118,14 @@ class Senses:
 
 
 def demand_flat(name: str, world: TopologicalMap, moves: Mapping[Gateway, Move]) -> None:
-    """Raises InputError if the ways of a world do not fit into a plane, as on a torus: on the way
-    round, the moves do not sum to nothing, and odometry would contradict the truth."""
+    """Check that the ways of a world fit into a plane.
+
+    On a torus they do not: the moves on a way round it do not sum to zero, so odometry would
+    contradict the truth.
+
+    Raises:
+        InputError: They do not fit.
+    """
     where: dict[Place, Move] = {}
     close = CLOSE * max((math.hypot(*move) for move in moves.values()), default=1)
     for start in world.stars:

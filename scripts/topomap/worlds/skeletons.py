@@ -1,10 +1,10 @@
 """The places and ways of free space in a raster: its skeleton as a graph.
 
-Noise is taken away first: each pixel becomes what most of the nine pixels round it are, and spots
-that are small beside the corridors are filled or cleared. The skeleton is the line in the middle of
-what is left. Junctions and ends of the skeleton are places. Lines that end near a wall are pruned,
-junctions whose largest free circles touch are one place, and so is a corner: a point where the line
-turns by more than ``SHARP`` degrees within a short distance.
+Noise is removed first: each pixel becomes what most of the nine pixels around it are, and spots
+that are small compared with the corridors are filled or cleared. The skeleton is the line in the
+middle of what is left. Junctions and ends of the skeleton are places. Lines that end near a wall
+are pruned. Junctions whose largest free circles touch are one place. A corner is a place, too: a
+point where the line turns by more than ``SHARP`` degrees within a short distance.
 
 All lengths here are in pixels, and points are (row, column).
 """
@@ -23,12 +23,12 @@ from skimage.morphology import skeletonize
 
 Numbers = npt.NDArray[np.float64]
 Grid = npt.NDArray[np.bool_]
-Line = Numbers  # the points of a line, one a row
+Line = Numbers  # the points of a line, one in each row
 
-SHARP = 45.0  # degrees by which a line turns at a corner
-SPOT = 9  # pixels of a spot that is noise, however wide corridors are
-MOST_OF_LINES = 10**6  # pixels of a skeleton
-MOST_WORK = 4 * 10**9  # pixels, times how far the middle is from the wall: some ten seconds
+SHARP = 45.0  # degrees: the least turn at a corner
+SPOT = 9  # pixels: a spot of this size is noise, however wide corridors are
+MOST_OF_LINES = 10**6  # the largest number of pixels of a skeleton
+MOST_WORK = 4 * 10**9  # pixels times the distance of the middle from the wall: some ten seconds
 ROUND = ndimage.generate_binary_structure(2, 2)  # free pixels also touch at their corners
 
 
@@ -40,9 +40,9 @@ class TooLarge(Exception):
 class Net:
     """Places, and lines between them.
 
-    ``where`` holds the points of the places, ``free`` the radius of the largest free circle there,
-    ``reach`` how far the disc reaches whose junctions have become this place. ``lines`` are lines
-    with their two ends; ``at`` tells of each place the lines that end there, twice those that lead
+    ``where`` has the points of the places, ``free`` the radius of the largest free circle there,
+    and ``reach`` the radius of the disc whose junctions have become this place. ``lines`` has lines
+    with their two ends; ``at`` has for each place the lines that end there, twice those that lead
     back. The other numbers count what was changed.
     """
 
@@ -63,13 +63,13 @@ class Net:
     last: int = 0
 
     def add_place(self, point: Numbers, free: float, reach: float) -> int:
-        """A new place."""
+        """Add a place."""
         self.last += 1
         self.where[self.last], self.free[self.last], self.reach[self.last] = point, free, reach
         return self.last
 
     def add(self, one: int, other: int, line: Line) -> int:
-        """A new line between two places."""
+        """Add a line between two places."""
         self.last += 1
         self.lines[self.last] = one, other, line
         self.at[one].append(self.last)
@@ -77,40 +77,46 @@ class Net:
         return self.last
 
     def remove(self, number: int) -> tuple[int, int, Line]:
-        """A line, which is taken away."""
+        """Remove a line, and return it."""
         one, other, line = self.lines.pop(number)
         self.at[one].remove(number)
         self.at[other].remove(number)
         return one, other, line
 
     def drop(self, place: int) -> None:
-        """Take away a place that has no line."""
+        """Remove a place that has no line."""
         for of in (self.where, self.free, self.reach, self.at):
             of.pop(place, None)
 
     def leaving(self, place: int) -> Iterator[tuple[int, Line]]:
-        """The lines at a place, each with its other end, and as it leads away from the place."""
+        """The lines at a place, each with its other end, in the direction away from the place."""
         for number in self.at[place]:
             one, other, line = self.lines[number]
             yield (other, line) if one == place else (one, line[::-1])
 
     def dissolve(self, place: int) -> None:
-        """Make one line of the two at a place, if they are two."""
+        """Join the two lines at a place to one line, if there are two."""
         if len(self.at[place]) != 2 or self.at[place][0] == self.at[place][1]:
             return
         (one, back), (other, line) = self.leaving(place)
         for number in (*self.at[place],):
             self.remove(number)
-        # What lies in the disc of the place is not part of either line; its middle is.
+        # The points in the disc of the place belong to neither line, but its centre does.
         between = self.where[place][None] if self.reach[place] else back[:0]
         self.drop(place)
         self.add(one, other, _joined(back[::-1], between, line))
 
 
 def net_of(free: Grid, radius: float | None = None, loops: bool = False) -> Net:
-    """The places and ways of free space. ``radius`` is how far along a line two junctions are apart
-    at most to be one place; None: if their largest free circles touch. ``loops`` tells whether
-    lines back to their own place are kept. Raises TooLarge."""
+    """Find the places and ways of free space.
+
+    Two junctions are one place if they are at most ``radius`` apart along a line, or, if it is
+    None, if their largest free circles touch. ``loops`` tells whether lines back to their own place
+    are kept.
+
+    Raises:
+        TooLarge: It would take too long.
+    """
     used = [np.flatnonzero(free.any(axis=axis)) for axis in (1, 0)]
     if not used[0].size:
         return Net()
@@ -141,13 +147,18 @@ def net_of(free: Grid, radius: float | None = None, loops: bool = False) -> Net:
 
 
 def _clean(free: Grid) -> tuple[Grid, int, int]:
-    """Free space without noise, and how many pixels and spots were changed. A spot is small if it
-    is not larger than a square a third as wide as the corridors."""
+    """Remove noise from free space.
+
+    A spot is small if it is not larger than a square a third as wide as the corridors.
+
+    Returns:
+        The free space, and how many pixels and spots were changed.
+    """
     around = ndimage.convolve(free.astype(np.uint8), np.ones((3, 3), np.uint8), mode="constant")
     clean: Grid = around >= 5
     if not clean.any():
         return clean, int(free.sum()), 0
-    # The corridors are as wide as it is far from wall to wall at most points of their middle.
+    # The width of the corridors is the median distance from wall to wall along their middle.
     room = ndimage.distance_transform_edt(clean)
     if (far := float(room.max())) * clean.size > MOST_WORK:
         raise TooLarge(f"free space {2 * far:.0f} pixels wide, among {clean.size:,} pixels")
@@ -161,7 +172,7 @@ def _clean(free: Grid) -> tuple[Grid, int, int]:
         labels, _ = ndimage.label(grid, touching)
         sizes = np.bincount(labels.ravel())
         small = sizes <= most
-        small[[0, labels[0, 0]]] = False  # the rim is what is round all free space
+        small[[0, labels[0, 0]]] = False  # the rim surrounds all free space
         spots += int(small.sum())
         clean ^= small[labels]
     return clean, int((clean != free).sum()), spots
@@ -173,14 +184,14 @@ def _skeleton(free: Grid) -> Grid:
 
 
 def _trace(net: Net, skeleton: Grid, room: Numbers) -> None:
-    """Put the lines of a skeleton into the net."""
+    """Add the lines of a skeleton to the net."""
     pixels = np.argwhere(skeleton)
     if len(pixels) > MOST_OF_LINES:
         raise TooLarge(f"lines of {len(pixels):,} pixels in the middle of free space")
     number = np.full(skeleton.shape, -1, np.int32)
     number[skeleton] = np.arange(len(pixels))
     near: list[list[int]] = [[] for _ in pixels]
-    # Pixels that touch at a corner only are neighbours if no pixel beside both is in the skeleton.
+    # Pixels that touch only at a corner are neighbours if the skeleton has no pixel beside both.
     one, other = skeleton[:-1, :], skeleton[1:, :]
     pairs = [(number[:-1, :][one & other], number[1:, :][one & other])]
     one, other = skeleton[:, :-1], skeleton[:, 1:]
@@ -202,6 +213,7 @@ def _trace(net: Net, skeleton: Grid, room: Numbers) -> None:
     done = bytearray(len(near))
 
     def chain(first: int, second: int) -> list[int]:
+        """Follow a line from a pixel to its end."""
         found = [first, second]
         while found[-1] not in places:
             done[found[-1]] = True
@@ -218,18 +230,23 @@ def _trace(net: Net, skeleton: Grid, room: Numbers) -> None:
                 line = chain(i, j)
                 net.add(places[i], places[line[-1]], points[line])
     for i in range(len(near)):
-        if i not in places and not done[i]:  # a ring
+        if i not in places and not done[i]:  # this is a ring
             places[i] = net.add_place(points[i], float(widths[i]), 0.0)
             net.add(places[i], places[i], points[chain(i, near[i][0])])
 
 
 def _prune(net: Net) -> bool:
-    """Take away lines that end near the wall of the corridor which they leave, the shortest first:
-    those that do not reach further from its middle than the corridor is wide. Whether there were
-    any."""
+    """Remove lines that end near the wall of the corridor which they leave, the shortest first.
+
+    They are those that reach no further from its middle than the corridor is wide.
+
+    Returns:
+        Whether there were any.
+    """
     found = net.pruned
 
     def spur(number: int) -> tuple[float, int, int] | None:
+        """The length of a line that is to be pruned, its free end and its other end; or None."""
         one, other, line = net.lines[number]
         for end, root in ((one, other), (other, one)):
             if len(net.at[end]) == 1 and len(net.at[root]) > 2:
@@ -256,10 +273,11 @@ def _prune(net: Net) -> bool:
 
 
 def _merge(net: Net, radius: float | None) -> bool:
-    """Make junctions that are near each other one place. Whether there were any."""
+    """Merge junctions that are near each other to one place, and tell whether there were any."""
     group = {place: place for place in net.where}
 
     def top(place: int) -> int:
+        """The place into which a place was merged."""
         while group[place] != place:
             group[place] = place = group[group[place]]
         return place
@@ -301,8 +319,11 @@ def _merge(net: Net, radius: float | None) -> bool:
 
 
 def _leave_out_loops(net: Net, room: Numbers, loops: bool) -> None:
-    """Begin a ring that no junction is on at one of its corners; leave out a ring that has none,
-    and lines without a corner that lead back to their own place."""
+    """Treat rings and lines that lead back to their own place.
+
+    A ring without a junction begins at one of its corners. A ring without a corner is left out, and
+    so are lines without a corner that lead back to their own place, unless loops are kept.
+    """
     waiting = [*net.lines]
     while waiting:
         number = waiting.pop()
@@ -324,7 +345,7 @@ def _leave_out_loops(net: Net, room: Numbers, loops: bool) -> None:
                 net.drop(one)
             else:
                 net.loops += 1
-                net.dissolve(one)  # which can make a line that leads back elsewhere
+                net.dissolve(one)  # this may make a line that leads back to another place
                 waiting.append(net.last)
 
 
@@ -349,9 +370,12 @@ def _split_at_corners(net: Net, room: Numbers) -> None:
 
 
 def _corners(line: Line, room: Numbers, ring: bool = False) -> list[int]:
-    """Where a line turns by more than SHARP degrees from the arm before to the arm after, each
-    three times as long as it is far from the wall there; of points that are nearer together than
-    an arm, the one where it turns most."""
+    """Find where a line turns by more than SHARP degrees.
+
+    The turn is that from the arm before to the arm after a point; each arm is three times as long
+    as the point is far from the wall. Of points that are nearer together than an arm, the one with
+    the largest turn is taken.
+    """
     near = room[line[:, 0].astype(int), line[:, 1].astype(int)]
     wide = float(np.median(near))
     arm = max(8, round(3 * wide))
@@ -361,7 +385,7 @@ def _corners(line: Line, room: Numbers, ring: bool = False) -> list[int]:
     if total < 2 * arm:
         return []
     course = smooth(line, max(2, round(wide)), ring)
-    at = np.arange(0, total)  # points of the line, one pixel apart
+    at = np.arange(0, total)  # points along the line, one pixel apart
     even = np.stack([np.interp(at, along, course[:, axis]) for axis in (0, 1)], axis=1)
     if ring:
         even = np.concatenate([even[-arm:], even, even[:arm]])
@@ -370,10 +394,10 @@ def _corners(line: Line, room: Numbers, ring: bool = False) -> list[int]:
     cross = before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0]
     turns = np.degrees(np.abs(np.arctan2(cross, (before * after).sum(axis=1))))
     found = []
-    first = 0 if ring else arm  # the point to which the first of the turns belongs
+    first = 0 if ring else arm  # the point of the first turn
     around = len(turns)
     while around and turns[best := int(np.argmax(turns))] > SHARP:
-        # The turn is about the same along a part of the course: its middle is the corner.
+        # Where the turn is about the same along a part of the line, its middle is the corner.
         level = turns >= turns[best] - 3
         low = high = best
         while low > 0 and level[low - 1]:
@@ -388,8 +412,11 @@ def _corners(line: Line, room: Numbers, ring: bool = False) -> list[int]:
 
 
 def smooth(line: Line, width: int, ring: bool = False) -> Line:
-    """A line without the steps of its pixels: the mean of up to ``width`` points before and after
-    each one, as many on both sides; the ends stay."""
+    """Remove the steps of the pixels from a line.
+
+    Each point becomes the mean of up to ``width`` points before it and as many after it; the ends
+    stay.
+    """
     many = len(line)
     if ring:
         body = np.concatenate([line[-1 - width : -1], line, line[1 : 1 + width]])
@@ -406,7 +433,7 @@ def _length(line: Line) -> float:
 
 
 def _joined(*parts: Any) -> Line:
-    """Lines one after the other; a point at which two meet is there once."""
+    """Join lines one after the other; a point at which two meet occurs once."""
     joined: Line = np.concatenate(parts)
     apart = np.any(np.diff(joined, axis=0) != 0, axis=1)
     kept: Line = joined[np.concatenate([[True], apart])]

@@ -1,8 +1,8 @@
 """The language of Survex: what its files say of stations and of the legs between them.
 
-Files are read line by line: a command begins with an asterisk, and any other line is a leg, in the
+Files are read line by line. A command begins with an asterisk, and any other line is a leg, in the
 order of readings that ``*data`` tells. A command that is not known, or a style of data that is not
-read, is refused with its file and line; what is known but left out is counted.
+read, is refused with its file and line. What is known but left out is counted.
 """
 
 import math
@@ -18,10 +18,11 @@ from topomap.runtime.files import MOST_BYTES
 from topomap.runtime.limits import LARGEST
 from topomap.worlds.plan import Point
 
-TOO_DEEP = 0.1  # of the tape by which depths may differ more than it is long, as tapes sag
-MOST_FILES = 1000  # that one survey includes
-DEEPEST = 50  # of files that include each other, and of blocks in blocks
-LONGEST = 400  # characters of the name of a station, with those of its blocks
+# Depths may differ by more than the length of the tape, because tapes sag, but only by this share.
+TOO_DEEP = 0.1
+MOST_FILES = 1000  # the largest number of files of one survey
+DEEPEST = 50  # the deepest nesting of files, and of blocks
+LONGEST = 400  # the largest number of characters of a station's name, with those of its blocks
 
 METRES = {"yards": 0.9144, "feet": 0.3048, "metric": 1.0, "metres": 1.0, "meters": 1.0}
 DEGREES = {"degs": 1.0, "degrees": 1.0, "grads": 0.9, "mils": 0.9, "minutes": 1 / 60}
@@ -44,19 +45,19 @@ QUANTITIES = {
 }
 ANGLES = {"compass", "backcompass", "clino", "backclino", "declination"}
 SLOPES = {"clino", "backclino"}
-READINGS = {  # of the styles of data that are read
+READINGS = {  # the readings of the styles of data that are read
     "normal": {"tape", "compass", "clino", "backtape", "backcompass", "backclino"},
     "cartesian": {"dx", "dy", "dz"},
-    # By the tape along the line, or level, and by depths.
+    # With these two styles the tape is along the line, or level, and depths are measured.
     "diving": {"tape", "compass", "backtape", "backcompass", "fromdepth", "todepth", "depthchange"},
     "cylpolar": {
         *("tape", "compass", "backtape", "backcompass", "fromdepth", "todepth", "depthchange"),
     },
 }
-STYLES = {"topofil": "normal"}  # older names
-NO_LEGS = {"passage", "ignore", "nosurvey"}  # styles whose lines tell no direction
+STYLES = {"topofil": "normal"}  # older names of styles
+NO_LEGS = {"passage", "ignore", "nosurvey"}  # styles whose lines are not legs, or tell no direction
 USUAL = ("from", "to", "tape", "compass", "clino")
-# Commands that say nothing of which stations are joined, and in which direction.
+# Commands that do not matter for which stations are joined, and in which direction.
 IGNORED = {
     *("copyright", "date", "entrance", "export", "instrument", "ref", "require", "sd", "solve"),
     *("team", "title"),
@@ -77,8 +78,11 @@ FLAGS = {"duplicate", "splay", "surface"}
 
 
 class Leg(NamedTuple):
-    """A leg between two stations: how far it leads east and north, in metres; its slope in degrees,
-    its length by the tape, and whether it measures a passage once more."""
+    """A leg between two stations.
+
+    It has how far it leads east and north, in metres; its slope in degrees; its length by the tape;
+    and whether it measures a passage a second time.
+    """
 
     number: int
     of: int
@@ -92,9 +96,12 @@ class Leg(NamedTuple):
 
 @dataclass
 class Survey:
-    """What a survey says. ``stations`` holds the number of each name, ``equal`` which stations are
-    the same one, ``fixed`` those that ``*fix`` names, with where they are; ``left`` counts what was
-    left out, and ``magnetic`` says whether a declination was to be found out."""
+    """What a survey says.
+
+    ``stations`` has the number of each name, ``equal`` tells which stations are the same one, and
+    ``fixed`` has those that ``*fix`` names, with their positions. ``left`` counts what was left
+    out, and ``magnetic`` tells whether a declination would have to be computed.
+    """
 
     stations: dict[str, int] = field(default_factory=dict)
     equal: list[int] = field(default_factory=list)
@@ -106,48 +113,48 @@ class Survey:
     file: str = ""
 
     def station(self, name: str) -> int:
-        """The number of the station of a name."""
+        """The number of the station with a name."""
         if name not in self.stations:
             self.stations[name] = self.new()
         return self.stations[name]
 
     def new(self) -> int:
-        """The number of a new station."""
+        """Make the number of a new station."""
         self.equal.append(len(self.equal))
         return len(self.equal) - 1
 
     def top(self, station: int) -> int:
-        """The number which all stations have that are equal to this one."""
+        """The number that stands for all stations which are equal to this one."""
         while self.equal[station] != station:
             self.equal[station] = self.equal[self.equal[station]]
             station = self.equal[station]
         return station
 
     def join(self, one: int, other: int) -> None:
-        """Make two stations equal; the one that came first gives its number."""
+        """Make two stations equal; the one that came first gives the number."""
         tops = self.top(one), self.top(other)
         self.equal[max(tops)] = min(tops)
 
     def told(self) -> list[str]:
-        """What was left out, a line for each kind."""
+        """What was left out, with a line for each kind."""
         return [f"{self.file}: {what}: {number}" for what, number in self.left.items()]
 
 
 @dataclass(frozen=True)
 class _Settings:
-    """What ``*begin`` keeps and ``*end`` brings back."""
+    """The settings that ``*begin`` keeps and ``*end`` restores."""
 
     style: str = "normal"
     order: tuple[str, ...] = USUAL
     units: Mapping[str, float] = field(default_factory=dict)
-    quadrants: frozenset[str] = frozenset()  # quantities that are told so
+    quadrants: frozenset[str] = frozenset()  # the quantities that are told as quadrants
     percent: frozenset[str] = frozenset()
     corrected: Mapping[str, tuple[float, float]] = field(default_factory=dict)
     declination: float = 0.0
     flags: frozenset[str] = frozenset()
     case: str = "tolower"
     truncate: int | None = None
-    splay: bool = False  # whether the station - is one at the end of a splay
+    splay: bool = False  # whether the station "-" is the end of a splay
     plumbs: bool = False
     equates: bool = False
     system: str = ""
@@ -161,7 +168,11 @@ class _Word(NamedTuple):
 
 
 def survey_of(file: str, content: bytes) -> Survey:
-    """What a file and those that it includes say. Raises InputError on bad input."""
+    """Read what a file, and those that it includes, say.
+
+    Raises:
+        InputError: A file has a fault.
+    """
     survey = Survey(file=file)
     reader = _Reader(survey)
     reader.read(file, content)
@@ -176,7 +187,7 @@ def survey_of(file: str, content: bytes) -> Survey:
 
 
 class _Reader:
-    """Reads files into a survey. ``where`` is the file and the line at which it is."""
+    """A reader of files into a survey; ``where`` is the current file and line."""
 
     def __init__(self, survey: Survey) -> None:
         self.survey = survey
@@ -206,13 +217,13 @@ class _Reader:
         }
 
     def fault(self, said: str) -> InputError:
-        """What is wrong at this line."""
+        """The error about what is wrong at this line."""
         return InputError(f"{self.where}: {said}")
 
     # Files.
 
     def read(self, file: str, content: bytes) -> None:
-        """Read a file, whose blocks end where it does."""
+        """Read a file, whose blocks must end in it."""
         self.files += 1
         self.bytes += len(content)
         if self.bytes > MOST_BYTES:
@@ -267,7 +278,7 @@ class _Reader:
         self.opened.pop()
 
     def _include(self, words: list[_Word]) -> None:
-        """Another file, in the folder of the first one or below."""
+        """Read another file, in the folder of the first one or below it."""
         if len(words) != 1:
             raise self.fault("*include names one file, in quotes if there are blanks in its name")
         asked = words[0].text
@@ -307,7 +318,7 @@ class _Reader:
     # Words and names.
 
     def _words(self, line: str) -> list[_Word]:
-        """The words of a line, without its comment."""
+        """Split a line into words, without its comment."""
         key = self.now.characters["blank"] + "\0" + self.now.characters["comment"]
         if self.pattern is None or self.pattern[0] != key:
             blank, comment = (re.escape(part) for part in key.split("\0"))
@@ -335,7 +346,7 @@ class _Reader:
             raise self.fault(f"{printable(words[most].text)[:40]!r} is more than is wanted here")
 
     def _parts(self, word: _Word) -> tuple[str, ...]:
-        """The names in a name that blocks qualify."""
+        """The parts of a name, with the names of its blocks."""
         signs = self.now.characters
         if not word.quoted and word.text[0] in signs["root"]:
             raise self.fault(f"{printable(word.text)[:40]}: names from the root are not read")
@@ -362,7 +373,11 @@ class _Reader:
         return ".".join((*self.now.prefix, *self._parts(word)))
 
     def _number(self, word: _Word) -> float:
-        """A number. Raises InputError if it is none."""
+        """Read a number.
+
+        Raises:
+            InputError: It is none.
+        """
         signs, text = self.now.characters, word.text
         sign = 1.0
         if text[:1] and text[0] in signs["minus"] + signs["plus"]:
@@ -384,7 +399,7 @@ class _Reader:
     # Legs.
 
     def _line(self, words: list[_Word], line: int) -> None:
-        """A line of data."""
+        """Read a line of data."""
         now = self.now
         if now.style in NO_LEGS:
             self.survey.left[f"lines of *data {now.style} left out"] += 1
@@ -421,7 +436,7 @@ class _Reader:
             self.survey.legs.append(leg)
 
     def _end(self, word: _Word, line: int) -> str | None:
-        """The name of the station at the end of a leg, None if the leg is a splay by it."""
+        """The name of the station at the end of a leg; None if the leg is a splay."""
         signs = self.now.characters
         if not word.quoted:
             if word.text == "-" and self.now.splay:
@@ -431,7 +446,7 @@ class _Reader:
                     raise self.fault("an anonymous station has one to three points")
                 if len(word.text) < 3:
                     return None
-                # Each such station is one of its own. No name that is read has two points together.
+                # Each such station is a new one. No name in a file has two points in a row.
                 return ".".join((*self.now.prefix, f"..{self.survey.new()}"))
             if len(word.text) == 1 and word.text in signs["omit"]:
                 raise self.fault("a station is left out; after *alias station - .. it is a splay")
@@ -443,7 +458,7 @@ class _Reader:
         return not word.quoted and len(word.text) == 1 and word.text in self.now.characters["omit"]
 
     def _measured(self, told: Mapping[str, _Word], name: str) -> float | None:
-        """A reading in metres or degrees, corrected; None if it is left out."""
+        """Read a length or an angle, corrected; None if it is left out."""
         word = told.get(name)
         if word is None or self._omitted(word):
             return None
@@ -463,7 +478,7 @@ class _Reader:
         return number
 
     def _quadrant(self, word: _Word) -> float:
-        """A bearing such as S34E."""
+        """Read a bearing such as S34E."""
         text = word.text.upper()
         if text in (ways := {"N": 0.0, "E": 90.0, "S": 180.0, "W": 270.0}):
             return ways[text]
@@ -476,7 +491,7 @@ class _Reader:
         ]
 
     def _slope(self, told: Mapping[str, _Word], name: str) -> float | None:
-        """A slope in degrees, 90 and -90 if it is plumbed, None if it is left out."""
+        """Read a slope in degrees; it is 90 or -90 if it was plumbed, None if it is left out."""
         if name in told:
             text = told[name].text.lower()
             if text in ("u", "up", "+v"):
@@ -495,8 +510,10 @@ class _Reader:
         return slope
 
     def _normal(self, told: Mapping[str, _Word]) -> tuple[float, float, float, float]:
-        """A leg by tape, compass and clino: east, north, its slope and its length. Where it was
-        measured from both ends, the mean is taken."""
+        """Read a leg by tape, compass and clino: east, north, its slope and its length.
+
+        If it was measured from both ends, the mean is taken.
+        """
         length = self._tape(told)
         ahead, back = self._slope(told, "clino"), self._slope(told, "backclino")
         slopes = [
@@ -509,7 +526,10 @@ class _Reader:
         return (*self._towards(told, flat), slope, length)
 
     def _tape(self, told: Mapping[str, _Word]) -> float:
-        """How long a leg is; where it was measured from both ends, the mean."""
+        """Read how long a leg is.
+
+        If it was measured from both ends, the mean is taken.
+        """
         tapes = [self._measured(told, name) for name in ("tape", "backtape")]
         known = [tape for tape in tapes if tape is not None]
         if not known:
@@ -525,7 +545,10 @@ class _Reader:
         return length
 
     def _towards(self, told: Mapping[str, _Word], flat: float) -> Point:
-        """How far east and north one comes so far in the direction of the compass."""
+        """Read the compass, and tell how far east and north a level length leads.
+
+        If the bearing was measured from both ends, the mean is taken.
+        """
         compass, behind = (self._measured(told, name) for name in ("compass", "backcompass"))
         if compass is None and behind is None:
             raise self.fault("no compass, though the leg is not plumbed")
@@ -536,8 +559,10 @@ class _Reader:
         return flat * math.sin(bearing), flat * math.cos(bearing)
 
     def _by_depths(self, told: Mapping[str, _Word]) -> tuple[float, float, float, float]:
-        """A leg by tape, compass and depths. The tape of a diver runs along the line, that of
-        cylindrical polar data is level."""
+        """Read a leg by tape, compass and depths: east, north, its slope and its length.
+
+        The tape of a diver runs along the line; the tape of cylindrical polar data is level.
+        """
         length = self._tape(told)
         depths = [self._depth(told, name) for name in ("fromdepth", "todepth", "depthchange")]
         before, after, change = depths
@@ -546,7 +571,7 @@ class _Reader:
         down = change or 0.0
         if self.now.style == "diving":
             if abs(down) > length > 0 and abs(down) > length * (1 + TOO_DEEP):
-                raise self.fault("the depths differ by more than the tape is long")
+                raise self.fault("the depths differ by more than the length of the tape")
             flat = math.sqrt(max(0.0, length**2 - down**2))
         else:
             flat, length = length, math.hypot(length, down)
@@ -555,7 +580,7 @@ class _Reader:
         return (*self._towards(told, flat), math.degrees(math.atan2(-down, flat)), length)
 
     def _depth(self, told: Mapping[str, _Word], name: str) -> float | None:
-        """A depth in metres, or a change of it, corrected; None if it is left out."""
+        """Read a depth in metres, or a change of it, corrected; None if it is left out."""
         word = told.get(name)
         if word is None or self._omitted(word):
             return None
@@ -567,7 +592,7 @@ class _Reader:
         return number
 
     def _by_axes(self, told: Mapping[str, _Word]) -> tuple[float, float, float, float]:
-        """A leg by how far it leads east, north and up."""
+        """Read a leg that is told by how far it leads east, north and up."""
         east, north = (self._measured(told, name) for name in ("dx", "dy"))
         if east is None or north is None:
             raise self.fault("no easting or no northing")
@@ -605,7 +630,7 @@ class _Reader:
             if name not in {*READINGS[style], "from", "to", "ignore", "ignoreall"}:
                 raise self.fault(f"*data {style}: the reading {printable(name)[:40]} is not read")
             if name != "ignore" and name in order:
-                raise self.fault(f"*data {style}: the reading {name} is there twice")
+                raise self.fault(f"*data {style}: the reading {name} occurs twice")
             if order[-1:] == ["ignoreall"]:
                 raise self.fault("*data: ignoreall must be the last of the readings")
             order.append(name)
@@ -620,7 +645,7 @@ class _Reader:
         self.now = replace(self.now, style=style, order=tuple(order))
 
     def _quantities(self, words: list[_Word], command: str) -> tuple[list[str], list[_Word]]:
-        """The quantities that a command begins with, and the words after them."""
+        """Split a command into the quantities with which it begins, and the other words."""
         found = []
         rest = [*words]
         while rest and (name := QUANTITIES.get(rest[0].text.lower())):
@@ -632,7 +657,7 @@ class _Reader:
         return found, rest
 
     def _unit(self, word: _Word, names: Iterable[str]) -> float:
-        """How many metres or degrees a unit is, which must be one of all these quantities."""
+        """The number of metres or degrees of a unit, which must fit all these quantities."""
         unit = word.text.lower()
         for name in names:
             known = DEGREES if name in ANGLES else METRES

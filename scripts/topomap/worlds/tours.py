@@ -1,4 +1,4 @@
-"""Tours: closed walks over every way, as short as they can be (the Chinese postman's)."""
+"""Tours: closed walks over every way that are as short as possible (Chinese postman's tours)."""
 
 import itertools
 from collections.abc import Iterable
@@ -12,20 +12,26 @@ from topomap.runtime.watch import Watch
 if TYPE_CHECKING:
     from networkx import Graph, MultiGraph
 
-MOST_ODD = 1500  # places with an odd number of ways: of more pairs than memory should hold
+MOST_ODD = 1500  # places with an odd number of ways; their pairs must fit into memory
 
 
 def tour(world: TopologicalMap, start: Place, watch: Watch | None = None) -> list[int]:
-    """The slots by which the places of a tour are left: a closed walk over every way that can be
-    reached from ``start``; places and ways in sorted order. The watch may end the work.
+    """Find a tour over every way that can be reached from ``start``.
 
-    Raises InputError where more than MOST_ODD places have an odd number of ways."""
+    Places and ways are taken in sorted order. The watch may end the work.
+
+    Returns:
+        The slots by which its places are left.
+
+    Raises:
+        InputError: More than MOST_ODD places have an odd number of ways.
+    """
     watch = watch or Watch()
     graph = _reached(world, start)
     _go_twice(graph, watch)
     route = []
     for here, there, key in nx.eulerian_circuit(graph, source=start, keys=True):
-        # A way walked twice has a key of networkx's own: take the first way there.
+        # A doubled way has a key of networkx's own: take the first way there.
         ways = [s for s in sorted(world.stars[here]) if world.links[here, s][0] == there]
         keyed = [s for s in ways if key in ((here, s), world.links[here, s])]
         route.append((keyed or ways)[0])
@@ -41,14 +47,16 @@ def _reached(world: TopologicalMap, start: Place) -> "MultiGraph[Place]":
     for a, b in ways:
         if a[0] in there:
             graph.add_edge(a[0], b[0], key=a)
-    copy: MultiGraph[Place] = nx.MultiGraph(graph)  # in the order of ways that eulerize has
+    copy: MultiGraph[Place] = nx.MultiGraph(graph)  # in eulerize's order of the ways
     return copy
 
 
 def _go_twice(graph: "MultiGraph[Place]", watch: Watch) -> None:
-    """Double ways, as few as can be, so that an even number of them meets at every place. It is
-    what networkx's ``eulerize`` does, and it gives the same; but that cannot be ended, and looks
-    for a path between each two of the places, where a search from each of them will do."""
+    """Double as few ways as possible, so that an even number of them meets at every place.
+
+    This is what networkx's ``eulerize`` does, with the same result. But that cannot be ended, and
+    looks for a path between each two places, where one search from each place is enough.
+    """
     odd = [place for place, ways in graph.degree() if ways % 2]
     if len(odd) > MOST_ODD:
         raise InputError(
@@ -60,7 +68,7 @@ def _go_twice(graph: "MultiGraph[Place]", watch: Watch) -> None:
         watch.tick()
         far = nx.single_source_shortest_path_length(graph, first)
         for second in itertools.islice(odd, nth + 1, None):
-            # The last place is named first, as in eulerize, on whose order the matching depends.
+            # The last place is named first, as in eulerize: the matching depends on the order.
             pairs.add_edge(second, first, weight=len(graph) - far[second])
     matching: Graph[Place] = nx.Graph(list(nx.max_weight_matching(pairs)))
     doubled: list[Iterable[Any]] = []
@@ -72,11 +80,16 @@ def _go_twice(graph: "MultiGraph[Place]", watch: Watch) -> None:
 
 
 def _heeding(watch: Watch) -> "Graph[Place]":
-    """An empty graph that looks at a watch whenever it is asked for neighbours: so that what
-    networkx does with it can be ended."""
+    """Make an empty graph that looks at a watch whenever it is asked for neighbours.
+
+    So what networkx does with it can be ended.
+    """
 
     class Heeding(nx.Graph):  # type: ignore[type-arg]
+        """A graph that looks at the watch."""
+
         def neighbors(self, n: Place) -> Any:
+            """The neighbours of a node, after a look at the watch."""
             watch.tick()
             return super().neighbors(n)
 

@@ -1,9 +1,9 @@
-"""Readers of the files that explorers have, one module a format.
+"""Readers of the files that explorers have, with one module for each format.
 
-Each module has ``fits(name, content)``, which says whether a file looks like this format, and
-``read(file, content, reading)``, which makes a ``Plan`` of it, or raises InputError: one line that
-names the file, and the line or the item where the fault is. ``FORMATS`` names all of them, in the
-order in which they are tried.
+Each module has ``fits(name, content)``, which tells whether a file looks like this format, and
+``read(file, content, reading)``, which makes a ``Plan`` of it or raises InputError. The message is
+one line that names the file, and the line or the item with the fault. ``FORMATS`` lists the modules
+in the order in which they are tried.
 """
 
 from importlib import import_module
@@ -28,7 +28,11 @@ IMAGES = b"\x89PNG", b"P1", b"P2", b"P3", b"P4", b"P5", b"P6", b"\xff\xd8\xff", 
 
 
 def read(file: str | Path, reading: Reading) -> Plan:
-    """The plan in a file, whose format is told by its content. Raises InputError, one line."""
+    """Read the plan in a file, whose content tells its format.
+
+    Raises:
+        InputError: It cannot be read. One line.
+    """
     content = read_bytes(file)
     for name in FORMATS:
         reader = import_module(f"{__name__}.{name}")
@@ -40,6 +44,8 @@ def read(file: str | Path, reading: Reading) -> Plan:
     if not content.strip():
         raise InputError(f"{file}: it is empty")
     if content.startswith(IMAGES):
-        raise InputError(f"{file}: an image; of a floor plan give the YAML file that names it")
+        raise InputError(
+            f"{file}: it is an image; for a floor plan, give the YAML file that names it"
+        )
     known = ", ".join(FORMATS.values())
-    raise InputError(f"{file}: it is in none of the formats that are read: {known}")
+    raise InputError(f"{file}: it is not in one of the formats that are known: {known}")

@@ -1,4 +1,4 @@
-"""What several readers need: texts, names, numbers and landmarks that a file may hold."""
+"""What several readers need: the texts, names, numbers and landmarks in files."""
 
 import functools
 import json
@@ -16,13 +16,13 @@ from topomap.runtime.errors import InputError, printable
 from topomap.runtime.limits import LARGEST, MOST_PLACES
 from topomap.worlds.plan import Plan
 
-LONGEST = 1000  # letters of a name
+LONGEST = 1000  # the largest number of letters of a name
 _WHOLE = re.compile(r"0|-?[1-9][0-9]{0,8}", re.ASCII)
 
 
-@functools.lru_cache(maxsize=1)  # each reader looks at the same file
+@functools.lru_cache(maxsize=1)  # all readers look at one file
 def json_of(content: bytes) -> Any:
-    """What a JSON text says; the error if it is none."""
+    """Read a JSON text; the result is the error if it is none."""
     try:
         return json.loads(content.decode("utf-8-sig"))
     except json.JSONDecodeError as error:
@@ -36,8 +36,10 @@ def json_of(content: bytes) -> Any:
 
 
 def beginning(content: bytes) -> bytes:
-    """The first letters of a file of text, small ones, for what a format is known by. XML may be
-    written in UTF-16."""
+    """The first letters of a text file, in lower case, by which its format is recognised.
+
+    The file may be in UTF-16, as some XML is.
+    """
     start = content[:4000]
     if start[:2] in (b"\xff\xfe", b"\xfe\xff"):
         start = start.decode("utf-16", "ignore").encode()
@@ -45,12 +47,16 @@ def beginning(content: bytes) -> bytes:
 
 
 def looks_like_json(content: bytes) -> bool:
-    """Whether a file begins as JSON does."""
+    """Tell whether a file begins like JSON."""
     return content.removeprefix(b"\xef\xbb\xbf").lstrip()[:1] in (b"{", b"[")
 
 
 def demand_json(file: str, content: bytes) -> Any:
-    """What a file of JSON says. Raises InputError, one line."""
+    """Read a file of JSON.
+
+    Raises:
+        InputError: It is none. One line.
+    """
     told = json_of(content)
     if isinstance(told, InputError):
         raise InputError(f"{file}:{told}")
@@ -58,15 +64,19 @@ def demand_json(file: str, content: bytes) -> Any:
 
 
 def shown(name: object) -> str:
-    """A name as messages have it: in one line, and not too long."""
+    """A name as messages show it, in one line, and not too long."""
     text = printable(str(name)[:100])
     return text if len(text) <= 60 else text[:57] + "..."
 
 
 def name_of(file: str, what: str, told: object) -> str:
-    """A name or a number, as text. Raises InputError if that can be none."""
+    """Read a name or a number as text.
+
+    Raises:
+        InputError: It is neither.
+    """
     if not isinstance(told, str | int | float) or isinstance(told, bool):
-        raise InputError(f"{file}: {what}: its name is no text and no number")
+        raise InputError(f"{file}: {what}: its name is neither a text nor a number")
     text = str(told)
     if len(text) > LONGEST:
         raise InputError(f"{file}: {what}: a name of more than {LONGEST} letters")
@@ -76,7 +86,7 @@ def name_of(file: str, what: str, told: object) -> str:
 
 
 def number_of(told: object) -> float | None:
-    """A finite number that clingo could hold, given as a number or as text; None if it is none."""
+    """Read a finite number that clingo could hold, from a number or a text; None if it is none."""
     try:
         number = float(told) if isinstance(told, str | int | float) else math.nan
     except (ValueError, OverflowError):
@@ -85,21 +95,29 @@ def number_of(told: object) -> float | None:
 
 
 def numbered(names: Collection[str]) -> dict[str, Place]:
-    """The places of these names: whole numbers if all names are, else the names."""
+    """The places of these names: whole numbers if all names are, otherwise the names."""
     whole = all(_WHOLE.fullmatch(name) for name in names)
     return {name: int(name) if whole else name for name in names}
 
 
 def demand_few(file: str, places: int) -> None:
-    """Raises InputError if there are too many places."""
+    """Check that there are not too many places.
+
+    Raises:
+        InputError: There are too many.
+    """
     if places > MOST_PLACES:
         raise InputError(f"{file}: {places} places; at most {MOST_PLACES} are read")
 
 
 def landmarks_of(file: str, what: str, told: object) -> frozenset[str]:
-    """Landmarks as terms of clingo, given as a list of texts. Raises InputError."""
+    """Read landmarks, which are given as a list of texts, as terms of clingo.
+
+    Raises:
+        InputError: They are not such a list.
+    """
     if not isinstance(told, list) or not all(isinstance(text, str) for text in told):
-        raise InputError(f"{file}: {what}: its landmarks are no list of texts")
+        raise InputError(f"{file}: {what}: its landmarks are not a list of texts")
     try:
         return frozenset(spelt(text) for text in told)
     except ValueError as error:

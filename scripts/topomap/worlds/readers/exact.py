@@ -1,11 +1,12 @@
-"""Worlds whose links name their gateways: graphs that topomap writes, and what other readers make
-of slots that a file tells.
+"""Worlds whose links name their gateways.
 
+These are the graphs that topomap writes, and what other readers make of slots that a file tells.
 Such a graph says how many ``slots`` there are, and may say where slot 0 points (``north``). Each
-edge has its ``ends``, two gateways ``[P,S]``, and may have a ``move``, how far it leads from the
-first of them to the second, east and north. A node may have its ``gateways``, ``landmarks``, a
-``name``, and coordinates ``x`` and ``y``. The graph may have ``straight``, pairs of gateways that
-are on one path: ``[[P,S,R], ...]``. Lists are JSON texts where a format has no lists.
+edge has its ``ends``, two gateways ``[P,S]``, and may have a ``move``, which is how far it leads
+from the first of them to the second, east and north. A node may have its ``gateways``,
+``landmarks``, a ``name``, and coordinates ``x`` and ``y``. The graph may have ``straight``, the
+pairs of gateways that are on one path: ``[[P,S,R], ...]``. Lists are JSON texts in a format that
+has no lists.
 """
 
 import json
@@ -37,13 +38,17 @@ class Link(NamedTuple):
 
 
 def fits(graph: "nx.Graph[Any]") -> bool:
-    """Whether the links of a graph name their gateways."""
+    """Tell whether the links of a graph name their gateways."""
     edges = graph.edges(data=True)
     return "slots" in graph.graph and all("ends" in data for _, _, data in edges)
 
 
 def plan_of(file: str, graph: "nx.Graph[Any]") -> Plan:
-    """The plan of such a graph. Raises InputError on bad input."""
+    """Make the plan of such a graph.
+
+    Raises:
+        InputError: The graph has a fault.
+    """
     demand_few(file, len(graph))
     names = {node: name_of(file, f"place {shown(node)}", node) for node in graph}
     places = numbered({*names.values()})
@@ -58,7 +63,7 @@ def plan_of(file: str, graph: "nx.Graph[Any]") -> Plan:
         except (ValueError, TypeError, KeyError, RecursionError):
             fit = False
         if not fit:
-            raise InputError(f"{file}: {what}: its ends are no two gateways [P,S] of these places")
+            raise InputError(f"{file}: {what}: its ends are not two gateways [P,S] of these places")
         links.append(Link(*ends, _move(file, what, data.get("move"))))
     points, landmarks, called, pending = {}, {}, {}, 0
     linked = {end for link in links for end in link[:2]}
@@ -73,7 +78,7 @@ def plan_of(file: str, graph: "nx.Graph[Any]") -> Plan:
             called[place] = name_of(file, what, data["name"])
         gateways = _list_or_none(data.get("gateways", [])) or []
         if not all(isinstance(slot, int) for slot in gateways):
-            raise InputError(f"{file}: {what}: its gateways are no list of slots")
+            raise InputError(f"{file}: {what}: its gateways are not a list of slots")
         pending += sum((place, slot) not in linked for slot in gateways)
     straight = None
     if "straight" in graph.graph:
@@ -82,7 +87,7 @@ def plan_of(file: str, graph: "nx.Graph[Any]") -> Plan:
                 (places[str(p)], _slot(s), _slot(r)) for p, s, r in _list(graph.graph["straight"])
             ]
         except (ValueError, TypeError, KeyError, RecursionError):
-            raise InputError(f"{file}: straight is no list of places with two slots") from None
+            raise InputError(f"{file}: straight is not a list of places with two slots") from None
         straight = [((place, one), (place, other)) for place, one, other in told]
     return plan(
         file,
@@ -110,8 +115,13 @@ def plan(
     pending: int = 0,
     told: Sequence[str] = (),
 ) -> Plan:
-    """The plan of links whose slots are known; so many gateways have no link, and are left out.
-    Raises InputError if a gateway has two links, or is no gateway."""
+    """Make the plan of links whose slots are known.
+
+    ``pending`` gateways have no link, and are left out.
+
+    Raises:
+        InputError: A gateway has two links, or is not a gateway.
+    """
     ends: dict[Gateway, Gateway] = {}
     for link in links:
         for (place, slot), other in (link[:2], (link.other, link.one)):
@@ -138,6 +148,7 @@ def plan(
             told_once.update(pair)
 
     def leave(gateway: Gateway) -> Exit:
+        """The exit of a gateway."""
         return Exit(gateway[0], (north + 360 * gateway[1] / slots) % 360)
 
     return Plan(
@@ -156,11 +167,15 @@ def plan(
 
 
 def demand_slots(file: str, told: object) -> int:
-    """A number of slots. Raises InputError."""
+    """Read a number of slots.
+
+    Raises:
+        InputError: It is none.
+    """
     try:
         slots = _slot(told)
     except ValueError:
-        raise InputError(f"{file}: slots is no whole number") from None
+        raise InputError(f"{file}: slots is not a whole number") from None
     if fault := slots_fault(slots):
         raise InputError(f"{file}: {fault}")
     return slots
@@ -169,7 +184,7 @@ def demand_slots(file: str, told: object) -> int:
 def _head(file: str, told: Mapping[str, Any]) -> tuple[int, float]:
     north = number_of(told.get("north", 0))
     if north is None:
-        raise InputError(f"{file}: north is no number of degrees")
+        raise InputError(f"{file}: north is not a number of degrees")
     return demand_slots(file, told["slots"]), north
 
 
@@ -198,5 +213,5 @@ def _move(file: str, what: str, told: object) -> Point | None:
     move = _list_or_none(told)
     numbers = [number_of(number) for number in move] if move is not None else []
     if len(numbers) != 2 or numbers[0] is None or numbers[1] is None:
-        raise InputError(f"{file}: {what}: its move is no two numbers")
+        raise InputError(f"{file}: {what}: its move is not two numbers")
     return numbers[0], numbers[1]

@@ -1,10 +1,10 @@
 """World files that a person writes: ground facts, in the language of clingo.
 
-``slots(K)`` and ``link(P,S,Q,R)``: the gateway in slot S of place P leads to place Q, to its
-gateway in slot R. Slots are numbered clockwise, slot 0 is north. What else may be told:
-``name(P,"text")``, ``coordinates(P,X,Y)``, ``landmark(P,L)``, and ``straight(P,S,R)``, as in
-instances: two gateways of a place that are on one path, or with S = R, one that ends its path. If
-one place has such a fact, only what is told is on one path, at all places.
+With ``slots(K)`` and ``link(P,S,Q,R)``, the gateway in slot S of place P leads to place Q, to its
+gateway in slot R. Slots are numbered clockwise, and slot 0 is north. These facts may be added:
+``name(P,"text")``, ``coordinates(P,X,Y)``, ``landmark(P,L)``, and ``straight(P,S,R)``, which as in
+instances names two gateways of a place that are on one path, or with S = R one that ends its path.
+If any place has such a fact, then at all places only the gateways of these facts are on one path.
 """
 
 import re
@@ -34,13 +34,17 @@ _MARKUP = (b"<", b"{", b"[")
 
 
 def fits(name: str, content: bytes) -> bool:
-    """Whether a file has facts, and neither XML nor JSON in it."""
+    """Tell whether a file has facts, and is neither XML nor JSON."""
     begin = content.removeprefix(b"\xef\xbb\xbf").lstrip()[:1]
     return begin not in _MARKUP and b"\0" not in content and bool(_FACT.search(content))
 
 
 def read(file: str, content: bytes, reading: Reading) -> Plan:
-    """The plan in a file of facts. Raises InputError on bad input."""
+    """Read the plan in a file of facts.
+
+    Raises:
+        InputError: The file has a fault.
+    """
     try:
         text = content.decode("utf-8-sig")
     except UnicodeDecodeError:
@@ -52,11 +56,11 @@ def read(file: str, content: bytes, reading: Reading) -> Plan:
 
 
 class _World:
-    """The facts of a world file, each with the line in which it stands."""
+    """The facts of a world file, each with its line."""
 
     def __init__(self, file: str) -> None:
         self.file = file
-        self.slots: tuple[int, int] | None = None  # with the line
+        self.slots: tuple[int, int] | None = None  # the number, with the line
         self.links: dict[Gateway, tuple[Gateway, int]] = {}  # in both directions
         self.terms: dict[str, clingo.Symbol] = {}  # the term of each place
         self.names: dict[Place, tuple[str, int]] = {}
@@ -65,10 +69,15 @@ class _World:
         self.straight: dict[Gateway, tuple[Gateway, int]] = {}
 
     def wrong(self, line: int, said: str) -> NoReturn:
+        """The error about what is wrong in a line."""
         raise InputError(f"{self.file}:{line}: {said}")
 
     def take(self, line: int, fact: clingo.Symbol | str) -> None:
-        """Read a fact, or raise InputError."""
+        """Read a fact.
+
+        Raises:
+            InputError: It has a fault.
+        """
         if isinstance(fact, str):
             self.wrong(line, fact)
         name, told = fact.name, fact.arguments
@@ -135,7 +144,7 @@ class _World:
         self.straight.setdefault(other, (one, line))
 
     def _place(self, line: int, fact: str, term: clingo.Symbol) -> str:
-        """A place's name: the text of a string, else the term."""
+        """The name of a place: the text of a string, otherwise the term."""
         text = term.string if term.type == clingo.SymbolType.String else str(term)
         name = name_of(f"{self.file}:{line}", fact, text)
         if self.terms.setdefault(name, term) != term:
@@ -148,7 +157,7 @@ class _World:
         return term.number
 
     def plan(self) -> Plan:
-        """The plan that the facts make."""
+        """Make the plan of the facts."""
         if self.slots is None:
             raise InputError(f"{self.file}: no fact slots(K), the number of directions at a place")
         slots = self.slots[0]
@@ -173,6 +182,7 @@ class _World:
         called = {name: term.number if whole else name for name, term in self.terms.items()}
 
         def out(gateway: Gateway) -> Gateway:
+            """The exit of a gateway."""
             return called[gateway[0]], gateway[1]
 
         links = [

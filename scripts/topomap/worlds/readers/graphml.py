@@ -1,9 +1,9 @@
-"""Street and corridor networks in GraphML, as OSMnx writes and networkx reads.
+"""Street and corridor networks in GraphML, as OSMnx writes and networkx reads them.
 
-Directed or undirected (multi)graphs. Nodes have coordinates x, y (projected, or longitude and
-latitude) or lon, lat. Edges may have their course (``geometry``): WKT, ``LINESTRING (x y, ...)``,
-or a list of points. An edge without one is straight. Two opposite directed edges of one course are
-one way; one that has no opposite edge can be gone one way only.
+They are directed or undirected (multi)graphs. Nodes have coordinates x, y (projected, or longitude
+and latitude) or lon, lat. Edges may have their course (``geometry``) as WKT, ``LINESTRING (x y,
+...)``, or as a list of points. An edge without a course is straight. Two opposite directed edges
+with one course are one way; an edge that has no opposite edge can be gone one way only.
 """
 
 import io
@@ -30,31 +30,40 @@ from topomap.worlds.readers import exact
 from topomap.worlds.readers.common import beginning
 
 Data = Mapping[str, Any]  # what is told of an edge
-DEGREE = 111_195  # metres of a degree of latitude, on a sphere of 6,371 km
-NEAR = 1e-9  # within which two points are one
-FAR = 0.1  # of its length may a course end from its places, until that is told
-# Of the EPSG codes, those of longitude and latitude are most of 4000 to 4999, and newer ones like
-# these; those of three axes, in metres from the middle of the Earth, are not.
+DEGREE = 111_195  # metres of a degree of latitude, for an earth radius of 6,371 km
+NEAR = 1e-9  # two points that are so near are one
+FAR = 0.1  # if a course ends farther from its places, as a share of its length, there is a warning
+# Most EPSG codes from 4000 to 4999 are of longitude and latitude, and so are newer ones like those
+# in GEOGRAPHIC. The codes in GEOCENTRIC are not: their three axes are metres from the middle of the
+# Earth.
 GEOGRAPHIC = {6318, 6668, 6706, 7844}
 PLANES = {"plane", "local", "cartesian", "none", "null"}
 GEOCENTRIC = {4328, 4936, 4978}
-NO, YES = {"false", "0", "no"}, {"true", "1", "yes"}  # what is written of one-way edges
+NO, YES = {"false", "0", "no"}, {"true", "1", "yes"}  # the values of the attribute oneway
 
 
 def fits(name: str, content: bytes) -> bool:
-    """Whether a file is GraphML."""
+    """Tell whether a file is GraphML."""
     begins = beginning(content)
     return begins[:1] == b"<" and b"graphml" in begins
 
 
 def read(file: str, content: bytes, reading: Reading) -> Plan:
-    """The plan in a GraphML file. Raises InputError on bad input."""
+    """Read the plan in a GraphML file.
+
+    Raises:
+        InputError: The file has a fault.
+    """
     graph = read_graphml(file, content)
     return exact.plan_of(file, graph) if exact.fits(graph) else plan_of(file, graph, reading)
 
 
 def read_graphml(file: str | Path, content: bytes, node_type: type = str) -> "nx.Graph[Any]":
-    """The graph in the content of a GraphML file. Raises InputError, one line."""
+    """Read the graph in the content of a GraphML file.
+
+    Raises:
+        InputError: There is none. One line.
+    """
     try:
         fromstring(content, forbid_dtd=True)
         with warnings.catch_warnings():
@@ -66,14 +75,18 @@ def read_graphml(file: str | Path, content: bytes, node_type: type = str) -> "nx
         ) from None
     except MemoryError:
         raise
-    except Exception as error:  # networkx has all kinds of errors for what it cannot read
+    except Exception as error:  # networkx raises all kinds of errors on bad files
         reason = " ".join(str(error).split())[:200]
         raise InputError(f"{file}: not a GraphML file that networkx reads: {reason}") from None
     return graph
 
 
 def plan_of(file: str, graph: "nx.Graph[Any]", reading: Reading) -> Plan:
-    """The plan of a graph whose nodes have coordinates. Raises InputError on bad input."""
+    """Make the plan of a graph whose nodes have coordinates.
+
+    Raises:
+        InputError: The graph has a fault.
+    """
     edges = _edges(file, graph)
     loops = [edge for edge in edges if edge[0] == edge[1]]
     if not reading.loops:
@@ -95,9 +108,9 @@ def plan_of(file: str, graph: "nx.Graph[Any]", reading: Reading) -> Plan:
     if degrees is None:
         degrees = False
         crs = printable(str(graph.graph["crs"]))[:60]
-        told.append(f"{file}: crs {crs} is not known, and taken to be of a plane (--degrees)")
+        told.append(f"{file}: crs {crs} is not known, and is taken to be of a plane (--degrees)")
     if degrees and not all(abs(lon) <= 540 and abs(lat) <= 90 for lon, lat in points.values()):
-        raise InputError(f"{file}: its coordinates are no longitude and latitude (--plane)")
+        raise InputError(f"{file}: its coordinates are not longitude and latitude (--plane)")
     if "crs" not in graph.graph and reading.degrees is None:
         units = "degrees" if degrees else "plane"
         flag = "--plane" if degrees else "--degrees"
@@ -156,15 +169,24 @@ class _Edge(NamedTuple):
 
     @property
     def key(self) -> tuple[Point, ...]:
-        """The same for two edges of one course, from whichever end it is written."""
+        """The course from the end that is first in order.
+
+        It is equal for two edges with one course, even if they are written from different ends.
+        """
         return min(self.course, self.course[::-1]) if self.course else ()
 
 
 def _edges(
     file: str, graph: "nx.Graph[Any]"
 ) -> list[tuple[Place, Place, tuple[Point, ...] | None, bool]]:
-    """The ways in order of their places: their ends, their course, if it is told, and whether they
-    can be gone only from the first end to the second. Raises InputError."""
+    """The ways, in the order of their places.
+
+    Each has its ends, its course (None if it is not told), and whether it can be gone only from the
+    first end to the second.
+
+    Raises:
+        InputError: A course cannot be read.
+    """
     made: list[tuple[Place, Place, _Edge, bool]] = []
     between: dict[tuple[Place, Place], list[_Edge]] = defaultdict(list)
     data: Data
@@ -178,7 +200,7 @@ def _edges(
                 ends = (one, other) if one_way else (min(one, other), max(one, other))
                 made.append((*ends, edge, one_way))
     else:
-        # Two opposite edges of one course are one way; a loop that can be gone both ways is there
+        # Two opposite edges with one course are one way. A loop that can be gone both ways occurs
         # twice.
         for one, other in sorted({(min(pair), max(pair)) for pair in between}):
             back: dict[tuple[Point, ...], list[_Edge]] = defaultdict(list)
@@ -200,7 +222,11 @@ def _edges(
 
 
 def _course(file: str, one: Place, other: Place, data: Data) -> tuple[Point, ...] | None:
-    """The course of an edge as it is told; None if it is not. Raises InputError."""
+    """Read the course of an edge; None if it is not told.
+
+    Raises:
+        InputError: It cannot be read.
+    """
     try:
         points = _points(str(data.get("geometry", "")))
     except (ValueError, TypeError, KeyError, IndexError, RecursionError, OverflowError):
@@ -211,7 +237,11 @@ def _course(file: str, one: Place, other: Place, data: Data) -> tuple[Point, ...
 
 
 def _points(text: str) -> list[Point] | None:
-    """The points of a course as it is written; None if there is none. Raises ValueError."""
+    """Read the points of a course; None if there is none.
+
+    Raises:
+        ValueError: It cannot be read.
+    """
     text = text.strip()
     if not text:
         return None
@@ -228,7 +258,10 @@ def _points(text: str) -> list[Point] | None:
 def _placed(
     told: tuple[Point, ...] | None, points: tuple[Point, Point]
 ) -> tuple[list[Point], float]:
-    """The points of a way from its first end to its second, and how far it ends from them."""
+    """The points of a way, in the order from its first end to its second.
+
+    It is told, too, how far they end from the two places.
+    """
     if told is None:
         return [*points], 0.0
     apart = math.dist(told[0], points[0]) + math.dist(told[-1], points[1])
@@ -245,8 +278,10 @@ def _in_plane(point: Point, origin: Point) -> Point:
 
 
 def _in_degrees(point: Point, origin: Point) -> Point:
-    """Metres east and north of another point, both in degrees of longitude and latitude. A degree
-    of longitude is taken to be as long as at the middle of their latitudes."""
+    """Metres east and north of another point, both in degrees of longitude and latitude.
+
+    A degree of longitude is taken to be as long as at the mean of their latitudes.
+    """
     east = (point[0] - origin[0] + 180) % 360 - 180
     middle = math.radians((point[1] + origin[1]) / 2)
     return DEGREE * east * math.cos(middle), DEGREE * (point[1] - origin[1])
@@ -267,9 +302,12 @@ def _point(file: str, graph: "nx.Graph[Any]", place: Place) -> Point:
 
 
 def _degrees(graph: "nx.Graph[Any]", points: Mapping[Place, Point]) -> bool | None:
-    """Whether the coordinates are degrees of longitude and latitude, as the coordinate reference
-    system says; None if it is not known. Without one they are taken to be of a plane, as those of a
-    robot are, unless they stand under the names lon and lat."""
+    """Tell whether the coordinates are degrees of longitude and latitude.
+
+    The coordinate reference system says so; the result is None if this system is not known. Without
+    one they are taken to be of a plane, as those of a robot are, unless they have the names lon and
+    lat.
+    """
     crs = str(graph.graph.get("crs", "")).strip().lower()
     if not crs:
         return not any("x" in graph.nodes[place] for place in points)
@@ -293,7 +331,7 @@ def _degrees(graph: "nx.Graph[Any]", points: Mapping[Place, Point]) -> bool | No
 
 
 def _provenance(graph: "nx.Graph[Any]") -> tuple[str, ...]:
-    """Source and licence, where the file tells them."""
+    """Source and licence, if the file tells them."""
     maker = str(graph.graph.get("created_with", ""))
     if not maker.startswith("OSMnx"):
         return ()

@@ -1,8 +1,9 @@
-"""Floor plans as map_server of ROS has them: a YAML file, with a PNG or PGM image beside it.
+"""Floor plans of map_server of ROS: a YAML file, with a PNG or PGM image beside it.
 
 Free space is where the image says so by the thresholds of the file. ``skeletons`` finds its places
-and the ways between them; they are numbered from 1, as lines of a page are read. North is the y
-axis of the map: up in the image, but for the third number of ``origin``, by which it is turned.
+and the ways between them; the places are numbered from 1, in the order of reading a page. North is
+the y axis of the map: it points up in the image, apart from the third number of ``origin``, by
+which the image is turned.
 """
 
 import math
@@ -22,14 +23,14 @@ if TYPE_CHECKING:
     from topomap.worlds.skeletons import Grid, Net
 
 MOST_PIXELS = 40_000_000
-UNKNOWN = 205  # as map_saver writes unknown space
+UNKNOWN = 205  # the grey value with which map_saver writes unknown space
 MOST_YAML = 2**16  # bytes
 MODES = "trinary", "scale", "raw"
 REQUIRED = "image", "resolution", "origin", "negate", "occupied_thresh", "free_thresh"
 
 
 def fits(name: str, content: bytes) -> bool:
-    """Whether a file is the YAML file of a map."""
+    """Tell whether a file is the YAML file of a map."""
     start = content[: 2 * MOST_YAML]
     image, *others = (
         re.search(rb"(?m)(^|[{,])[ \t]*[\"']?%s[\"']?[ \t]*:" % key.encode(), start)
@@ -39,7 +40,11 @@ def fits(name: str, content: bytes) -> bool:
 
 
 def read(file: str, content: bytes, reading: Reading) -> Plan:
-    """The plan in a map. Raises InputError on bad input."""
+    """Read the plan in a map.
+
+    Raises:
+        InputError: The file has a fault.
+    """
     need("floorplan", file)
     from topomap.worlds import skeletons
 
@@ -67,8 +72,8 @@ def read(file: str, content: bytes, reading: Reading) -> Plan:
     grid, rows, unknown = _free_space(file, path, image, negate, free, mode)
     if unknown:
         warned.append(
-            f"{file}: free_thresh {free:g} takes the grey value {UNKNOWN} for free, with which "
-            f"map_saver writes what is unknown: {unknown} pixels (free_thresh 0.196 does not)"
+            f"{file}: with free_thresh {free:g} the grey value {UNKNOWN} is free, but map_saver "
+            f"writes it for what is unknown: {unknown} pixels (with free_thresh 0.196 it is not)"
         )
     if max(*grid.shape, rows) * resolution > LARGEST:
         raise InputError(f"{file}: resolution: the map is wider than {LARGEST} metres")
@@ -118,7 +123,10 @@ def read(file: str, content: bytes, reading: Reading) -> Plan:
 
 
 def _told(file: str, content: bytes) -> Mapping[str, Any]:
-    """What the YAML file says. Tags, anchors and references are refused before anything is made."""
+    """Read what the YAML file says.
+
+    Tags, anchors and references are refused before any object is made.
+    """
     import yaml
 
     if len(content) > MOST_YAML:
@@ -136,7 +144,7 @@ def _told(file: str, content: bytes) -> Mapping[str, Any]:
         reason = printable(" ".join(str(error).split()))[:200]
         raise InputError(f"{file}: not a YAML file: {reason}") from None
     if not isinstance(told, dict) or not isinstance(node, yaml.MappingNode):
-        raise InputError(f"{file}: no map of map_server: it must have keys and values")
+        raise InputError(f"{file}: not a map of map_server: it must have keys and values")
     keys = [str(key.value) for key, _ in node.value]
     for key in REQUIRED:
         if told.get(key) is None:
@@ -149,7 +157,7 @@ def _told(file: str, content: bytes) -> Mapping[str, Any]:
 
 def _number(file: str, told: Mapping[str, Any], key: str) -> float:
     try:
-        # What YAML takes for a text may be a number, such as 5e-2.
+        # Some numbers are texts for YAML, such as 5e-2.
         number = math.nan if isinstance(told[key], bool) else float(told[key])
     except (TypeError, ValueError, OverflowError):
         number = math.nan
@@ -161,9 +169,12 @@ def _number(file: str, told: Mapping[str, Any], key: str) -> float:
 def _free_space(
     file: str, path: Path, image: str, negate: bool, free: float, mode: str
 ) -> "tuple[Grid, int, int]":
-    """Where the image beside a file is free, how many rows it has, and how many of the free pixels
-    have the grey value that stands for unknown space, if there are brighter ones. The size is
-    looked at before memory is taken for the pixels. What is transparent is unknown, so not free."""
+    """Find where the image beside a file is free, and how many rows it has.
+
+    The third result is the number of free pixels with the grey value of unknown space; it is 0 if
+    no free pixel is brighter. The size of the image is checked before memory is allocated for the
+    pixels. What is transparent is unknown, and so not free.
+    """
     import numpy as np
     from PIL import Image
 
@@ -185,12 +196,12 @@ def _free_space(
         if error.strerror:
             raise of_file(path, error) from None
         raise InputError(f"{name} is not a PNG or PGM image, or not a whole one") from None
-    except Exception as error:  # Pillow has all kinds of errors for what it cannot read
+    except Exception as error:  # Pillow raises all kinds of errors on bad files
         reason = printable(" ".join(str(error).split()))[:200]
         raise InputError(f"{name} cannot be read: {reason}") from None
     grey, known = pixels
     grey = np.float32(255) - grey if negate else grey
-    if mode == "raw":  # the value is the chance in percent
+    if mode == "raw":  # the value is a probability in percent
         known &= grey <= 100
         taken = grey / 100
     else:
@@ -203,8 +214,10 @@ def _free_space(
 
 
 def _grey(picture: Any) -> Any:
-    """Of each pixel how bright it is, 0 to 255, the mean of its colours; and whether it is known,
-    which transparent ones are not."""
+    """The brightness of each pixel, from 0 to 255, as the mean of its colours.
+
+    It is told, too, whether each pixel is known; transparent ones are not.
+    """
     import numpy as np
 
     if picture.mode.startswith("I"):
@@ -218,8 +231,11 @@ def _grey(picture: Any) -> Any:
 
 
 def _beside(file: str, image: str) -> tuple[Path, list[str]]:
-    """The path of an image in the folder of a file, or below; and what there is to warn of. Of the
-    whole path of an image on another machine the name is enough."""
+    """The path of an image in the folder of a file, or below it, and the warnings about it.
+
+    An absolute path that leads elsewhere may be from another machine. Then the file of the same
+    name is taken that is beside this file.
+    """
     if file == "-":
         raise InputError(f"{file}: its image is in its folder, so it must be given by its name")
     said = f"{file}: image: {printable(image)[:200]}"
@@ -229,7 +245,7 @@ def _beside(file: str, image: str) -> tuple[Path, list[str]]:
         path = (folder / image).resolve()
         if Path(image).is_absolute() and not path.is_relative_to(folder):
             path = (folder / Path(image).name).resolve()
-            warned.append(f"{said}: taken to be the file of this name beside it")
+            warned.append(f"{said} is taken to be the file of this name beside it")
         inside = path.is_relative_to(folder)
         regular = path.is_file()
     except (OSError, ValueError, RuntimeError):
@@ -237,7 +253,7 @@ def _beside(file: str, image: str) -> tuple[Path, list[str]]:
     if not inside:
         raise InputError(f"{said} is outside of the folder of this file")
     if not regular:
-        raise InputError(f"{said} is not there, or is no file")
+        raise InputError(f"{said} is not there, or is not a file")
     return path, warned
 
 
@@ -252,7 +268,7 @@ def _course(net: "Net", one: int, other: int, line: Any, flat: Any) -> list[Poin
 
 
 def _changed(file: str, net: "Net") -> list[str]:
-    """What was changed and left out, a line for each kind."""
+    """What was changed and left out, with a line for each kind."""
     return [
         f"{file}: {what}: {number}"
         for what, number in (

@@ -1,7 +1,8 @@
-"""Maps in the program's own JSON, as ``topomap solve --json`` writes them (docs/formats.md).
+"""Maps in topomap's own JSON, as ``topomap solve --json`` writes them (docs/formats.md).
 
-The linked part of a map becomes a world, with its slots, its landmarks, and what is on one path.
-Slots count from a gateway of their own at each place, so a compass means nothing in such a world.
+The linked part of a map becomes a world with its slots, its landmarks, and the pairs of gateways on
+one path. Each place counts its slots from a gateway of its own, so a compass has no meaning in such
+a world.
 """
 
 from collections import Counter
@@ -26,7 +27,7 @@ Pairs = list[tuple[Gateway, Gateway]]
 
 
 def fits(name: str, content: bytes) -> bool:
-    """Whether a file is JSON with maps in it."""
+    """Tell whether a file is JSON with maps in it."""
     if not looks_like_json(content):
         return False
     told = json_of(content)
@@ -38,7 +39,11 @@ def fits(name: str, content: bytes) -> bool:
 
 
 def read(file: str, content: bytes, reading: Reading) -> Plan:
-    """The plan of the map in a file, the first one of several. Raises InputError on bad input."""
+    """Read the plan of the map in a file, which is the first one if there are several.
+
+    Raises:
+        InputError: The file has a fault.
+    """
     told = demand_json(file, content)
     formats.demand(file, told)
     results = told.get("results") if isinstance(told, dict) and "results" in told else [told]
@@ -70,7 +75,7 @@ def _plan(file: str, slots: int, entry: Mapping[str, Any], warnings: Sequence[st
         for told in entry["places"]:
             place = _whole(told["place"])
             if place in stars:
-                raise InputError(f"{file}: map 1: place {place} is there twice")
+                raise InputError(f"{file}: map 1: place {place} occurs twice")
             stars[place] = [_whole(slot) for slot in told["gateways"]]
             signs = landmarks_of(file, f"place {place}", told.get("landmarks", []))
             landmarks[place] = signs
@@ -118,18 +123,21 @@ def _opposite(gateway: Gateway, slots: int) -> Gateway:
 def _straight(
     paths: Sequence[Sequence[Gateway]], ends: Mapping[Gateway, Gateway], slots: int
 ) -> Pairs:
-    """The pairs of linked gateways that are on one path, by the headings of the paths. Raises
-    ValueError or LookupError if they do not go along the links, or if that can be read in two ways.
+    """Find the pairs of linked gateways that are on one path, from the headings of the paths.
 
-    A heading that is not the last one is a gateway, and it is on one path with that by which one
-    arrives from the heading before. The last heading is pending, or a direction without a gateway
-    of this path, unless the path is circular: then it is linked to the first place. Another path
-    may have a gateway in that very direction, which is opposite to where one arrives. But each
+    A heading that is not the last one is a gateway. It is on one path with the gateway by which one
+    arrives from the heading before. The last heading is pending, or is a direction without a
+    gateway of this path, unless the path is circular: then it is linked to the first place. Another
+    path may have a gateway in that direction, which is opposite to the gateway of arrival. But each
     gateway is on one path.
+
+    Raises:
+        ValueError: The headings do not follow the links, or can be read in two ways.
+        LookupError: A gateway is not known.
     """
     used: Counter[Gateway] = Counter()
     pairs: Pairs = []
-    # Each as where one arrives, the last heading, and the first one.
+    # For each path: the gateway of arrival, the last heading, and the first one.
     circular: list[tuple[list[Gateway], Gateway, Gateway]] = []
     perhaps: list[tuple[list[Gateway], Gateway, Gateway]] = []
     for path in paths:

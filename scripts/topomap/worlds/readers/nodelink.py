@@ -1,10 +1,10 @@
-"""Graphs in node-link JSON, as networkx, D3 and others write them.
+"""Graphs in node-link JSON, as networkx, D3 and other programs write them.
 
-Nodes stand under ``nodes``, edges under ``links`` or ``edges``. An edge has ``source`` and
-``target`` (or ``from`` and ``to``), each the ``id`` of a node or its place in the list, from 0. A
-node has coordinates: ``x`` and ``y``, ``lon`` and ``lat``, or ``pos`` or ``position``, which is a
-list of two numbers or holds x and y. An edge may have its course, ``geometry``, as in GraphML, or
-as a LineString of GeoJSON. y and the second number point north.
+Nodes stand under ``nodes``, and edges under ``links`` or ``edges``. An edge has ``source`` and
+``target`` (or ``from`` and ``to``), each of which is the ``id`` of a node or its position in the
+list, from 0. A node has coordinates: ``x`` and ``y``, ``lon`` and ``lat``, or ``pos`` or
+``position``, which is a list of two numbers or has x and y. An edge may have its course,
+``geometry``, as in GraphML, or as a LineString of GeoJSON. y and the second number point north.
 """
 
 import json
@@ -35,7 +35,7 @@ ENDS = (("source", "target"), ("from", "to"))
 
 
 def fits(name: str, content: bytes) -> bool:
-    """Whether a file is JSON with nodes and edges in it."""
+    """Tell whether a file is JSON with nodes and edges in it."""
     if not looks_like_json(content):
         return False
     told = json_of(content)
@@ -45,13 +45,17 @@ def fits(name: str, content: bytes) -> bool:
 
 
 def read(file: str, content: bytes, reading: Reading) -> Plan:
-    """The plan of a graph in node-link JSON. Raises InputError on bad input."""
+    """Read the plan of a graph in node-link JSON.
+
+    Raises:
+        InputError: The file has a fault.
+    """
     told = demand_json(file, content)
     formats.demand(file, told)
     nodes, edges = told["nodes"], told["links" if "links" in told else "edges"]
     for what, listed in (("nodes", nodes), ("edges", edges)):
         if not isinstance(listed, list) or not all(isinstance(one, dict) for one in listed):
-            raise InputError(f"{file}: its {what} are no list of objects")
+            raise InputError(f"{file}: its {what} are not a list of objects")
     demand_few(file, len(nodes))
     names = _names(file, nodes)
     attributes = told.get("graph")
@@ -84,7 +88,7 @@ def read(file: str, content: bytes, reading: Reading) -> Plan:
 
 
 def _course(edge: Mapping[str, Any]) -> dict[str, Any]:
-    """What is told of an edge, a course of GeoJSON as a list."""
+    """What is told of an edge, with a course of GeoJSON as a list."""
     told = {**edge}
     course = told.get("geometry")
     if isinstance(course, dict):
@@ -107,27 +111,30 @@ def _names(file: str, nodes: Sequence[Mapping[str, Any]]) -> list[str]:
             raise InputError(f"{file}: node {number} of the list, from 0, has no id, others have")
         names.append(_name(file, f"node {number} of the list, from 0", node["id"]))
         if names[-1] in seen:
-            raise InputError(f"{file}: node {shown(names[-1])} is there twice")
+            raise InputError(f"{file}: node {shown(names[-1])} occurs twice")
         seen.add(names[-1])
     return names
 
 
 def _name(file: str, what: str, told: object) -> str:
-    """A name; the nodes of networkx may also be tuples, which are lists in JSON."""
+    """Read a name; the nodes of networkx may also be tuples, which are lists in JSON."""
     if isinstance(told, list) and told and not any(isinstance(one, list | dict) for one in told):
         return ",".join(name_of(file, what, one) for one in told)
     return name_of(file, what, told)
 
 
 def _id(end: object) -> object:
-    """What an edge names as its end. D3 puts the node itself there, once it has drawn a graph."""
+    """The name of the end of an edge.
+
+    When D3 has drawn a graph, the end is the node itself, which has its name in it.
+    """
     if isinstance(end, dict):
         return end.get("id", end.get("index"))
     return end
 
 
 class _Ends:
-    """The ends of edges: by the names of nodes, or if one is no such name, by their numbers."""
+    """The ends of edges, by the names of nodes or, if one is not such a name, by their numbers."""
 
     def __init__(
         self,
@@ -162,12 +169,12 @@ class _Ends:
                 made.append(self.names[end])
             else:
                 name = shown(_name(self.file, what, end))
-                raise InputError(f"{self.file}: {what}: {name} is no node")
+                raise InputError(f"{self.file}: {what}: {name} is not a node")
         return made
 
 
 def _point(node: Mapping[str, Any]) -> dict[str, Any]:
-    """The coordinates of a node that stand under another name than x and y, or lon and lat."""
+    """The coordinates of a node that have other names than x and y, or lon and lat."""
     for key in POINTS:
         point = node.get(key)
         if isinstance(point, dict):

@@ -1,8 +1,8 @@
-"""Cave surveys of Survex, .svx: stations, and legs between them by tape, compass and clino.
+"""Cave surveys of Survex (.svx): stations, and legs between them by tape, compass and clino.
 
-A place is a junction of legs (three or more) or a dead end (one); a chain of legs between two of
+A place is a junction of legs (three or more) or a dead end (one). A chain of legs between two of
 them is a way. ``surveys`` reads the files; here the legs become a plan. The move of a way is the
-sum of its legs seen from above, its length the sum of their tapes.
+sum of its legs seen from above, and its length is the sum of their tapes.
 """
 
 import math
@@ -19,13 +19,13 @@ from topomap.worlds.courses import exit_towards, point_along, shares
 from topomap.worlds.plan import Exit, Plan, Point, Reading, Way
 from topomap.worlds.surveys import Leg, Survey, survey_of
 
-STEEP = 80.0  # degrees; a steeper leg at the end of a way has no direction of its own
-NEAR = 1e-6  # metres, within which two points are one
-SHOWN = 10  # stations that a message names
+STEEP = 80.0  # degrees: a steeper leg at the end of a way does not give its direction
+NEAR = 1e-6  # metres: two points that are so near are one
+SHOWN = 10  # the largest number of stations in a message
 
 
 def fits(name: str, content: bytes) -> bool:
-    """Whether a file is a survey: by its name, or if it begins with a command of Survex."""
+    """Tell whether a file is a survey, by its name or by a command of Survex at its start."""
     if name.lower().endswith(".svx"):
         return True
     start = content[:4000].removeprefix(b"\xef\xbb\xbf")
@@ -35,7 +35,11 @@ def fits(name: str, content: bytes) -> bool:
 
 
 def read(file: str, content: bytes, reading: Reading) -> Plan:
-    """The plan in a survey. Raises InputError on bad input."""
+    """Read the plan in a survey.
+
+    Raises:
+        InputError: The file has a fault.
+    """
     survey = survey_of(file, content)
     net = _Net(file, survey)
     ways, upright, loops, rings = [], [], 0, 0
@@ -80,8 +84,11 @@ def read(file: str, content: bytes, reading: Reading) -> Plan:
 
 @dataclass
 class _Chain:
-    """Legs from one place to the next: its two ends, the legs as they are gone, and whether each
-    one is gone from its ``to`` to its ``of``."""
+    """The legs from one place to the next.
+
+    It has its two ends, the legs in order, and whether each one is gone from its ``to`` to its
+    ``of``.
+    """
 
     ends: tuple[int, int]
     legs: list[tuple[Leg, bool]] = field(default_factory=list)
@@ -93,10 +100,9 @@ class _Chain:
 
 
 class _Net:
-    """Stations, of which equal ones are one, and the legs between them.
+    """Stations, of which equal ones are merged, and the legs between them.
 
-    ``names`` holds what each station is called: the first name by which it came. ``at`` holds the
-    legs at a station.
+    ``names`` has the first name of each station. ``at`` has the legs at a station.
     """
 
     def __init__(self, file: str, survey: Survey) -> None:
@@ -145,9 +151,11 @@ class _Net:
                 self.told.append(f"{file}: {what}: {_listed(names)}")
 
     def chains(self) -> Iterable[_Chain]:
-        """The chains of legs between junctions and dead ends. Of a loop without any, the station
-        that came first is its place."""
-        done: set[int] = set()  # legs, by their number
+        """The chains of legs between junctions and dead ends.
+
+        In a loop without any of these, the station that came first is the place.
+        """
+        done: set[int] = set()  # the legs that are in a chain, by number
         order = sorted(self.at)
         for first in (*(station for station in order if len(self.at[station]) != 2), *order):
             alone = len(self.at[first]) == 2
@@ -168,8 +176,10 @@ class _Net:
                 yield chain
 
     def points(self) -> dict[int, Point]:
-        """Where stations are: from those that are fixed along the legs, without any adjustment. In
-        a part where none is fixed, the station that came first is, as Survex does it."""
+        """The positions of stations, along the legs from those that are fixed, without adjustment.
+
+        In a component where none is fixed, the station that came first is, as in Survex.
+        """
         where: dict[int, Point] = {}
         for name, point in self.survey.fixed.items():
             station = self.survey.top(self.survey.stations[name])
@@ -183,7 +193,7 @@ class _Net:
         return where
 
     def _spread(self, where: dict[int, Point], waiting: list[int]) -> None:
-        """Where the stations are that legs join with these."""
+        """Find the positions of the stations that legs join to these."""
         while waiting:
             later = []
             for here in waiting:
@@ -197,11 +207,17 @@ class _Net:
 
 
 def _without_duplicates(legs: list[Leg]) -> tuple[list[Leg], int]:
-    """The legs, of those that are flagged as duplicates only the ones without which stations would
-    not be joined; and how many are left out. Such a one measures a passage once more."""
+    """Leave out legs that are flagged as duplicates, which measure a passage a second time.
+
+    Those without which stations would not be connected are kept.
+
+    Returns:
+        The legs, and how many were left out.
+    """
     group: dict[int, int] = {}
 
     def top(station: int) -> int:
+        """The station that stands for all those connected with this one."""
         group.setdefault(station, station)
         while group[station] != station:
             group[station] = group[group[station]]
@@ -219,7 +235,7 @@ def _without_duplicates(legs: list[Leg]) -> tuple[list[Leg], int]:
     for leg in kept:
         at[leg.of].add(leg.number)
         at[leg.to].add(leg.number)
-    # What is left of a chain of duplicates, where one of its legs is gone, is no dead end.
+    # The rest of a chain of duplicates, after one of its legs was left out, is not a dead end.
     gone = [leg for leg in legs if leg.number not in by_number]
     cut = {end for leg in gone for end in (leg.of, leg.to)}
     waiting = [station for station in cut if len(at[station]) == 1]
@@ -263,8 +279,11 @@ def _exit(
     along: float,
     share: float,
 ) -> Exit:
-    """The exit by which a way leaves a station: its direction is that of the point so far along it
-    as it is seen from above, from its first leg that is not steep."""
+    """The exit by which a way leaves a station.
+
+    Its direction is that of the point so far along it, seen from above, from its first leg that is
+    not steep.
+    """
     if all(steep):
         raise InputError(
             f"{file}: {_between(chain, names)} has only legs steeper than {STEEP:g} degrees, so it "

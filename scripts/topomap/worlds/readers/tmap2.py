@@ -1,10 +1,10 @@
-"""Topological maps of robots, as topological_navigation (ROS and ROS 2) writes them: YAML, tmap2.
+"""Topological maps of robots, as topological_navigation (ROS and ROS 2) writes them: tmap2, YAML.
 
-``nodes`` is a list; each has a ``node`` with its ``name``, its ``pose``, whose ``position`` x, y is
-in metres in the plane of the map, and ``edges``, each with its ``edge_id`` and the ``node`` where
-it ends. An edge can be gone in its direction only; two opposite ones are one way. The older form,
-a list of such nodes alone, is read, too. The orientation, the actions, and the transformation of
-the map's frame are not used.
+``nodes`` is a list. Each item has a ``node`` with its ``name``, its ``pose``, whose ``position`` x,
+y is in metres in the plane of the map, and its ``edges``, each with its ``edge_id`` and the
+``node`` where it ends. An edge can be gone in its direction only; two opposite ones are one way.
+The older form, a list of such nodes alone, is read, too. The orientation, the actions, and the
+transformation of the map's frame are not used.
 """
 
 import re
@@ -30,12 +30,12 @@ from topomap.worlds.readers.common import (
 
 DEEPEST = 50
 MOST_BYTES = 2**25
-MOST_VALUES = 5 * 10**6  # where each alias counts as what it stands for
+MOST_VALUES = 5 * 10**6  # an alias counts as much as what it stands for
 _NODES = re.compile(rb"""^(?:["']?nodes["']?\s*:|-\s+["']?(?:meta|node)["']?\s*:)""", re.MULTILINE)
 
 
 class _Loader(getattr(yaml, "CSafeLoader", yaml.SafeLoader)):  # type: ignore[misc]
-    """The safe loader, by which all plain values are texts."""
+    """The safe loader of YAML, which reads all plain values as texts."""
 
     yaml_implicit_resolvers = {  # noqa: RUF012
         "<": [("tag:yaml.org,2002:merge", re.compile(r"^(?:<<)$"))]
@@ -43,7 +43,7 @@ class _Loader(getattr(yaml, "CSafeLoader", yaml.SafeLoader)):  # type: ignore[mi
 
 
 def fits(name: str, content: bytes) -> bool:
-    """Whether a file is YAML, or JSON, with nodes that have edges."""
+    """Tell whether a file is YAML, or JSON, with nodes that have edges."""
     if looks_like_json(content):
         told = json_of(content)
         nodes = told.get("nodes") if isinstance(told, dict) else told
@@ -57,13 +57,17 @@ def fits(name: str, content: bytes) -> bool:
 
 
 def read(file: str, content: bytes, reading: Reading) -> Plan:
-    """The plan of a tmap2. Raises InputError on bad input."""
+    """Read the plan of a tmap2.
+
+    Raises:
+        InputError: The file has a fault.
+    """
     told = _yaml(file, content)
     listed = told.get("nodes") if isinstance(told, dict) else told
     meta = told.get("meta") if isinstance(told, dict) else None
     meta = meta if isinstance(meta, dict) else {}
     if not isinstance(listed, list):
-        raise InputError(f"{file}: its nodes are no list")
+        raise InputError(f"{file}: its nodes are not a list")
     demand_few(file, len(listed))
     nodes: dict[str, dict[str, Any]] = {}
     for number, entry in enumerate(listed):
@@ -104,7 +108,7 @@ def _edges(file: str, name: str, node: dict[str, Any]) -> list[tuple[str, str, d
     listed = node.get("edges")
     listed = [] if listed in (None, "", "null", "~") else listed
     if not isinstance(listed, list):
-        raise InputError(f"{file}: node {shown(name)}: its edges are no list")
+        raise InputError(f"{file}: node {shown(name)}: its edges are not a list")
     made = []
     for number, edge in enumerate(listed):
         what = f"edge {number}, from 0, of node {shown(name)}"
@@ -130,7 +134,7 @@ def _told_exactly(
     nodes: dict[str, dict[str, Any]],
     edges: list[tuple[str, str, str, dict[str, Any]]],
 ) -> "nx.MultiGraph[Any]":
-    """The graph of a map that topomap wrote: its edges tell their slots."""
+    """The graph of a map that topomap wrote, whose edges tell their slots."""
     head = {key: meta[key] for key in ("slots", "north", "straight") if key in meta}
     graph: nx.MultiGraph[Any] = nx.MultiGraph()
     graph.graph.update(**head)
@@ -148,7 +152,7 @@ def _told_exactly(
         ends = one, str(about["slot"]), other, str(about["back"])
         back = ends[2:] + ends[:2]
         if ends in gone:
-            raise InputError(f"{file}: edge {shown(called)} of node {shown(one)} is there twice")
+            raise InputError(f"{file}: edge {shown(called)} of node {shown(one)} occurs twice")
         gone[ends] = 1
         if back not in gone:
             move = {"move": about["move"]} if "move" in about else {}
@@ -163,7 +167,11 @@ def _told_exactly(
 
 
 def _yaml(file: str, content: bytes) -> Any:
-    """What a file of YAML says, all plain values as texts. Raises InputError."""
+    """Read a file of YAML, with all plain values as texts.
+
+    Raises:
+        InputError: It cannot be read.
+    """
     if len(content) > MOST_BYTES:
         raise InputError(f"{file}: larger than {MOST_BYTES >> 20} MiB")
     try:
@@ -190,7 +198,11 @@ def _yaml(file: str, content: bytes) -> Any:
 
 
 def _demand_plain(file: str, text: str) -> None:
-    """Raises InputError if there are tags, or if it is nested too deep."""
+    """Check that there are no tags, and that nothing is nested too deeply.
+
+    Raises:
+        InputError: There are, or it is.
+    """
     depth = 0
     for event in yaml.parse(text, Loader=_Loader):
         line = _line(event)
@@ -205,12 +217,16 @@ def _demand_plain(file: str, text: str) -> None:
 
 
 def _line(part: yaml.Event | yaml.Node) -> int:
-    """The line where a part of the text begins, from 1."""
+    """The line in which a part of the text begins, from 1."""
     return part.start_mark.line + 1 if part.start_mark else 1
 
 
 def _demand_small(file: str, root: yaml.Node) -> None:
-    """Raises InputError if a value holds itself, or if too much is had by aliases."""
+    """Check that no value contains itself, and that aliases do not make the file too large.
+
+    Raises:
+        InputError: One does, or they do.
+    """
     sizes: dict[Hashable, int] = {}
     waiting = [(root, False)]
     open_: set[int] = set()
@@ -228,7 +244,7 @@ def _demand_small(file: str, root: yaml.Node) -> None:
                 said = f"more than {MOST_VALUES} values, counting what aliases stand for"
                 raise InputError(f"{file}:{_line(node)}: {said}")
         elif id(node) in open_:
-            raise InputError(f"{file}:{_line(node)}: it holds itself by an alias")
+            raise InputError(f"{file}:{_line(node)}: it contains itself by an alias")
         elif id(node) not in sizes:
             open_.add(id(node))
             waiting.append((node, True))

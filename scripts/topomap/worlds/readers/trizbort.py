@@ -1,11 +1,11 @@
-"""Maps of Trizbort, with which players draw the rooms of a text adventure: XML.
+"""Maps of Trizbort (XML), with which players draw the rooms of a text adventure.
 
-A ``room`` has an ``id``, a ``name``, and a place on the paper, x to the right and y downwards. A
-``line`` has its ``dock``s, by ``index``: the ``id`` of a room, and the ``port`` there, one of
-sixteen directions of the compass. With ``flow="oneWay"`` it can be gone from its first dock to its
-last only. A line may also end at a ``point`` of the paper: it leads nowhere yet, and is left out.
-So are lines that go up, down, in or out, as their labels say, and those without a port, because
-they have no direction.
+A ``room`` has an ``id``, a ``name``, and a position on the paper, x to the right and y downwards. A
+``line`` has its ``dock``s, by ``index``: the ``id`` of a room, and the ``port`` there, which is one
+of sixteen directions of the compass. With ``flow="oneWay"`` it can be gone only from its first dock
+to its last. A line may also end at a ``point`` of the paper: it leads nowhere yet, and is left out.
+Lines that go up, down, in or out, as their labels say, and those without a port, are left out, too,
+because they have no direction.
 """
 
 import re
@@ -39,25 +39,29 @@ PORTS = [
     "nw",
     "nnw",
 ]  # clockwise
-NO_DIRECTION = re.compile(r"(in|out|u|d)|.*\b(up|down)\b.*", re.DOTALL)  # what labels say
-NAMED = 10  # lines that a warning names
+NO_DIRECTION = re.compile(r"(in|out|u|d)|.*\b(up|down)\b.*", re.DOTALL)  # labels of lines
+NAMED = 10  # the largest number of lines in a warning
 
 
 def fits(name: str, content: bytes) -> bool:
-    """Whether a file is a map of Trizbort."""
+    """Tell whether a file is a map of Trizbort."""
     begin = beginning(content)
     return begin[:1] == b"<" and b"<trizbort" in begin
 
 
 def read(file: str, content: bytes, reading: Reading) -> Plan:
-    """The plan in a map of Trizbort. Raises InputError on bad input."""
+    """Read the plan in a map of Trizbort.
+
+    Raises:
+        InputError: The file has a fault.
+    """
     root = _root(file, content)
     found = root.find("map")
     rooms: dict[str, Element] = {}
     for room in () if found is None else found.iter("room"):
         name = name_of(file, "a room", room.get("id", ""))
         if not name or name in rooms:
-            said = "has no id" if not name else f"{shown(name)}: its id is there twice"
+            said = "has no id" if not name else f"{shown(name)}: its id occurs twice"
             raise InputError(f"{file}: a room {said}")
         rooms[name] = room
     demand_few(file, len(rooms))
@@ -141,7 +145,7 @@ def _ends(file: str, what: str, line: Element) -> list[Element]:
         if end.tag in ("dock", "point"):
             index = number_of(end.get("index", str(number)))
             if index is None:
-                raise InputError(f"{file}: {what}: the index of one of its ends is no number")
+                raise InputError(f"{file}: {what}: the index of one of its ends is not a number")
             ends.append((index, number, end))
     ends.sort(key=lambda one: one[:2])
     return [end for _, _, end in ends[:1] + ends[1:][-1:]]
@@ -149,7 +153,7 @@ def _ends(file: str, what: str, line: Element) -> list[Element]:
 
 def _exit(file: str, what: str, place: Place, port: str) -> Exit:
     if port not in PORTS:
-        raise InputError(f"{file}: {what}: port {shown(port)} is none of {', '.join(PORTS)}")
+        raise InputError(f"{file}: {what}: port {shown(port)} is not one of {', '.join(PORTS)}")
     return Exit(place, 360 * PORTS.index(port) / len(PORTS))
 
 
@@ -161,13 +165,18 @@ def _centre(file: str, name: str, room: Element) -> Point:
     ]
     x, y, w, h = told
     if x is None or y is None or w is None or h is None:
-        raise InputError(f"{file}: room {shown(name)}: its x, y, w and h are no finite numbers")
+        raise InputError(f"{file}: room {shown(name)}: its x, y, w and h are not finite numbers")
     return x + w / 2, -(y + h / 2)
 
 
 def _once(ways: Iterable[Way]) -> tuple[list[Way], list[Way]]:
-    """The ways, lines between the same two ports taken as one, which can be gone both ways if one
-    of them can, or two of them lead in opposite directions; and the lines that are left out."""
+    """Take lines between the same two ports as one way.
+
+    It can be gone both ways if one of the lines can, or if two of them lead in opposite directions.
+
+    Returns:
+        The ways, and the lines that are left out.
+    """
     known: dict[tuple[Exit, ...], Way] = {}
     again = []
     for way in ways:
@@ -183,7 +192,11 @@ def _once(ways: Iterable[Way]) -> tuple[list[Way], list[Way]]:
 
 
 def _demand_apart(file: str, ways: Iterable[Way], called: Mapping[Place, str]) -> None:
-    """Raises InputError if two lines end at one port of a room."""
+    """Check that no two lines end at one port of a room.
+
+    Raises:
+        InputError: Two do.
+    """
     taken: dict[Exit, Place] = {}
     for way in ways:
         for end, other in (way.ends, way.ends[::-1]):
