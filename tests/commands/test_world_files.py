@@ -223,7 +223,7 @@ NODES = '{"nodes": [{"id": 1, "x": 0, "y": 0}, {"id": 2, "x": 1, "y": 0}], "link
 HOSTILE_JSON = {
     NODES % '{"source": 1, "target": 5}': "edge 0, from 0: 5 is not a node",
     NODES % '{"source": 1}': "edge 0, from 0: it has no source and target",
-    NODES % '{"source": {"a": 1}, "target": 2}': "edge 0, from 0: its name is no text",
+    NODES % '{"source": {"a": 1}, "target": 2}': "edge 0, from 0: its name is neither a text",
     NODES % '{"source": true, "target": 2}': "its name is neither a text nor a number",
     NODES % '{"source": 1, "target": 2, "geometry": [[0,0],[1%s,0]]}' % ("0" * 400): "its geometry",
     NODES % '{"source": 1, "target": 2, "geometry": {"coordinates": "x"}}': "its geometry is no",
