@@ -264,10 +264,7 @@ def test_a_file_of_somebody_else_is_not_touched(tmp_path, capsys):
     target.write_text("precious")
     part.write_text("precious")
     assert main(["solve", GRID, "-o", str(file)]) == 2
-    assert (
-        capsys.readouterr().err
-        == f"{part}: not a journal of this program; it is in the way\n"
-    )
+    assert capsys.readouterr().err == f"{part}: not a journal of this program; it is in the way\n"
     assert part.read_text() == "precious"
     part.unlink()
     part.symlink_to(target)
