@@ -267,7 +267,7 @@ def test_the_command_says_what_it_disbelieves(topomap):
     done = topomap("solve", MISREAD, "--optimal", "--planar", "--noise", "1")
     assert (done.returncode, done.stderr) == (0, "")
     first, last = done.stdout.splitlines()
-    assert first.startswith("map 1: disbelieves step 13 (gateway 2 imagined); places 9, links 12,")
+    assert first.startswith("map 1: contradicts step 13 (gateway 2 imagined); places 9, links 12,")
     assert last == "1 optimal map by clingo, cost 1 1 0 6 9"
 
 

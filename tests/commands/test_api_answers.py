@@ -85,7 +85,7 @@ def test_what_solve_refuses(seen):
         ({"noise": 1, "encoding": "paper"}, "cannot be combined with noise"),
         ({"genus": True, "encoding": "paper"}, "does not state genus"),
         ({"limit": 0}, "limit=0"),
-        ({"optimal": True, "jobs": 2}, "not the best ones"),
+        ({"optimal": True, "jobs": 2}, "not that for the best ones"),
     ):
         with pytest.raises(ValueError, match=fault):
             topomap.solve(seen, **options)

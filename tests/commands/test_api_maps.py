@@ -110,7 +110,7 @@ def test_what_was_misread_is_told():
     assert wrong.document()["misread"] == [{"step": 1, "gateway": 1, "seen": False}]
     assert wrong.places == {0: [0], 1: [0, 1]}
     assert wrong.pending == [(1, 1)]
-    assert "disbelieves step 1 (gateway 1 missed); places 2" in str(wrong)
+    assert "contradicts step 1 (gateway 1 missed); places 2" in str(wrong)
     assert wrong != sure
 
 

@@ -112,7 +112,7 @@ def test_what_is_read_by_people(topomap):
     numbers = re.findall(r"^step (\d+): (\d+) hypothes[ei]s \(", text, re.MULTILINE)
     assert [(int(step), int(number)) for step, number in numbers] == list(enumerate(levels))
     assert "\n  certain now: new(0)\n" in text
-    first = "\n  next: turn 0 (by the gateway stood at): to a pending gateway\nstep 1: "
+    first = "\n  next: turn 0 (by the gateway where it stands): to a pending gateway\nstep 1: "
     assert first in text
     assert (
         "\n  2 optimal maps, cost 0 6 9\n  next: nothing; no walk tells the 2 maps apart\n" in text

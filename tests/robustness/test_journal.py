@@ -161,7 +161,7 @@ def test_without_resume_a_run_begins_anew(tmp_path, monkeypatch):
         (lambda text: text[:20], None),  # or of the first one
         (lambda text: "", None),
         (lambda text: text.replace('"facts and', '"other and'), "of another run"),
-        (lambda text: "no journal\n" + text, "no journal of this program"),
+        (lambda text: "no journal\n" + text, "not a journal of this program"),
         (lambda text: text.replace("[1, 1]", "[2, 1]", 1), "damaged after unit"),
         (lambda text: text.replace("[1, 1]", "null", 1), "damaged after unit"),
         (
@@ -264,10 +264,7 @@ def test_a_file_of_somebody_else_is_not_touched(tmp_path, capsys):
     target.write_text("precious")
     part.write_text("precious")
     assert main(["solve", GRID, "-o", str(file)]) == 2
-    assert (
-        capsys.readouterr().err
-        == f"{part}: it is not a journal of this program, and is in the way\n"
-    )
+    assert capsys.readouterr().err == f"{part}: not a journal of this program; it is in the way\n"
     assert part.read_text() == "precious"
     part.unlink()
     part.symlink_to(target)

@@ -63,7 +63,7 @@ def turn(experience: "Experience", step: int) -> str:
     if slot is None:
         return "a new log" if step in experience.starts else "a second look"
     if step == 1 or experience.turns[step - 2] is None:
-        return f"leave {'by the gateway stood at' if slot == 0 else _clockwise(slot)}"
+        return f"leave {'by the gateway where it stands' if slot == 0 else _clockwise(slot)}"
     return direction(slot, experience.slots)
 
 
@@ -123,7 +123,7 @@ def disbelieved(experience: "Experience", misread: "Sequence[Misread]") -> str:
         kind = "missed" if there else "imagined"
         told.setdefault(step, []).append(f"{'gateway' if gateway else 'landmark'} {what} {kind}")
     steps = [f"step {step} ({', '.join(what)})" for step, what in told.items()]
-    return f"disbelieves {', '.join(steps)}; " if steps else ""
+    return f"contradicts {', '.join(steps)}; " if steps else ""
 
 
 def refused(arrivals: Mapping[str, Sequence[Gateway]], new: int, most: int = 6) -> str:

@@ -273,7 +273,7 @@ def _next(made: Plan, record: Record, status: Status) -> str:
     assert record.slots is not None
     told, every = [words.direction(turn, record.slots) for turn in made.turns], status.all_best
     if status.step == 0 and told:  # the agent arrived by no gateway, so there is no way back
-        told[0] = "by the gateway stood at" if made.turns[0] == 0 else ""
+        told[0] = "by the gateway where it stands" if made.turns[0] == 0 else ""
     walk = ", ".join(
         " ".join(filter(None, [str(turn), f"({'; '.join(how)})" * bool(how)]))
         for step, (turn, word) in enumerate(zip(made.turns, told, strict=True))

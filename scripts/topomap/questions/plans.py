@@ -130,7 +130,7 @@ def _turn(experience: Experience, step: int, turn: int) -> str:
     """Describe a turn, by its number and in words."""
     slots = experience.slots
     if step == 0 and experience.steps == 0:
-        return f"{turn} leave{' by the gateway stood at' * (turn == 0)}"
+        return f"{turn} leave{' by the gateway where it stands' * (turn == 0)}"
     return f"{turn} {words.direction(turn, slots).partition(' (')[0]}"
 
 
@@ -158,7 +158,7 @@ def _verdict(kind: str, many: int, made: Plan, every: bool) -> str:
         return "the map is closed; whether it is the real one is open: others were not looked at"
     if made.kind == "bisimilar":
         which = "the maps" if every else "these maps"
-        return f"no walk tells {which} apart, for ever, and no gateway is pending"
+        return f"no walk can ever tell {which} apart, and no gateway is pending"
     if made.kind == "apart":
         if not made.turns:
             return "a walk that tells the maps apart is not found yet"
@@ -179,7 +179,7 @@ def _why(pair: Untold) -> str:
         return "another walk tells them apart"
     proof = f"{words.number(len(pair.related), 'pair')} of dstates, checked"
     if pair.why == "bisimilar":
-        return f"no walk tells them apart, for ever: a bisimulation of {proof}"
+        return f"no walk can ever tell them apart: a bisimulation of {proof}"
     of = []
     for number, gateways in zip((pair.one, pair.other), pair.open, strict=True):
         if gateways:

@@ -97,7 +97,7 @@ def check_proofs(path: str, experience: Experience) -> Checked:
         one, other, why, related = _proof_of(f"{path}: proof {number}", proof, charts)
         found = list(bisimulation.faults(one, other, related, marker))
         if not found and why == "bisimilar" and any(bisimulation.pending(one, other, related)):
-            found.append("it comes to a pending gateway, so it is not for ever")
+            found.append("it comes to a pending gateway, so a later walk may tell them apart")
         wrong += [f"{path}: proof {number}: {fault}" for fault in found[:1]]
     return Checked(len(proofs), tuple(wrong), steps, whole)
 

@@ -391,7 +391,7 @@ def told_gathered(experience: Experience, name: str, bound: int | None) -> Told:
         words = f"after step {steps[0]} the agent sees the gateways {_seen(experience, steps[0])}"
     elif kind == "compass":
         slot = experience.compass[steps[0]]
-        words = f"the gateway stood at points to compass slot {slot} after step {steps[0]}"
+        words = f"the agent's gateway points to compass slot {slot} after step {steps[0]}"
     else:
         words = f"step {steps[0]} is {experience.lengths[steps[0] - 1]} long"
     return Told(words, steps)
@@ -477,7 +477,7 @@ def told_known(
     if kind == "compass":
         slots = [experience.compass[step] for step in steps]
         words = (
-            f"the gateway stood at points to compass slot {slots[0]} after step {one}, and to "
+            f"the agent's gateway points to compass slot {slots[0]} after step {one}, and to "
             f"{slots[1]} after step {other}"
         )
         if at is not None:

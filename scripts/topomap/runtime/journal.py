@@ -56,7 +56,7 @@ class Journal:
                 self._file.seek(0)
                 if self._file.read(len(HEAD)) != HEAD[: self.path.stat().st_size]:
                     raise InputError(
-                        f"{self.path}: it is not a journal of this program, and is in the way"
+                        f"{self.path}: not a journal of this program; it is in the way"
                     )
                 if resume:
                     self._read(head.encode())
