@@ -36,7 +36,7 @@ def add(group: Any) -> None:
         nargs="?",
         metavar="WORLDS",
         help="a file each line of which names a world by the arguments of topomap generate, such "
-        "as: maze 4 4 --seed {0..2}",
+        "as: maze 4 4 --seed {0..2}; files of worlds are looked for from its folder",
     )
     add("--from", dest="given", metavar="FILE", help="make the page of what --json wrote before")
     add(
@@ -113,6 +113,8 @@ def _worlds(file: str) -> "Iterator[World]":
                 args, unknown = _parser().parse_known_args(call)
             if unknown:
                 raise InputError(f"unrecognized arguments: {' '.join(unknown)}")
+            if args.kind in ("world", "network") and file != "-":
+                args.file = str(Path(file).parent / args.file)
             environment = environment_of(args)
             if args.signs:
                 environment = environment.signed(args.signs, args.seed or 0)

@@ -18,47 +18,60 @@ WIDTH = 116
 HEAD = """\
 # An atlas of aliasing
 
-How many maps explain what an explorer saw? This page counts them, after each step of walks in {worlds} worlds. It was
-written by `topomap atlas`, from [atlas.json](atlas.json), which has all figures; `make atlas` counts again.
+How many maps explain what an explorer saw? This page counts them, after each step of two walks in
+each of {worlds} worlds. `topomap atlas` wrote it from [atlas.json](atlas.json), which has all
+figures; `make atlas` counts again.
 
-Each world is explored by two walks: the *tour* goes every way and comes back, and is as short as it can be; the *random
-walk* goes on until it has gone every way, but {steps} steps at most (its seed is {seed}). The maps are counted four times:
+The *tour* goes every way, comes back to where it began, and is as short as such a walk can be.
+The *random walk* goes on until it has gone every way, but it ends after {steps} steps at most
+(seed {seed}). The maps are counted four times:
 
-- **all**: all maps that explain what was seen in turns, that is, relative to the gateway where the agent arrived;
+- **all**: the maps that explain what was seen in turns, that is, counted from the gateway where
+  the agent arrived;
 - **planar**: those of them that are planar;
-- **compass**: the maps that explain the same walk if the agent also has a compass, which is exact;
+- **compass**: the maps that explain the same walk if the agent also has an exact compass;
 - **closed**: those of the first kind that have no pending gateway.
 
-A count is exact, or it is "more than N" and stops at the step that is named: after this step there are more than
-{most} maps, or the {seconds} seconds that each count may take were over.
+A count is exact. It stops where it is told that there are more than {most} maps, or where the
+{seconds} seconds are over that each part of the work may take; then the page names the step.
 """
 LEFT = """\
-## The number of maps at the end of the walk
+## How many maps live at the end of the walk
 
 {table}
 """
 SETTLING = """\
 ## Which further walk leaves the real map alone
 
-*One since* is the step from which on there is one map, to the end of the walk. *Further walk* is the shortest walk in the
-real world, from the end of the first one, that refutes all of the maps that live there but the real one. A map is refuted
-if no map that came of it explains the longer walk. "None (3 of 4)" is a proof: for 3 of the 4 other maps there is no such
-walk, whatever its length. If more than {living} maps live, {living} of the others are tried: if one of them cannot be
-refuted, this is a proof, too; otherwise the cell has a lower bound, and a walk that refutes those that were tried. "Real
-map open" says that the real map is not closed as yet, so it is none of the closed maps.
+*One since* is the step from which on there is one map, to the end of the walk. *Further walk* is
+the length of the shortest walk in the real world, from the end of the first walk on, that refutes
+each map that lives there but the real one. A map is refuted if no map that comes of it explains
+the longer walk, too. So after the further walk there is one map, if the real map is closed. (Of
+the closed maps, those are refuted that are closed already; others may become closed on the way.)
 
-In a world with a way round, no walk ever leaves one map of the first three kinds, once a way round was walked. For there
-is a map in which each step along a new way came to a new place. It has no way round at all, so it is planar and keeps the
-path axiom, and whatever is seen next can be seen at a new place. A closed map has no room for that.
+- `none (3 of 4)` is a proof: 3 of the 4 other maps can be refuted by no walk, whatever its
+  length.
+- If there are more than {living} other maps, {living} of them are tried. If one of these can be
+  refuted by no walk, that is a proof, too: `none (1 of 100 tried)`. If not, the cell has a lower
+  bound, and then the length of a walk that refutes those which were tried.
+- `real map open` says that the real map has pending gateways as yet, so it is none of the closed
+  maps; or it is not one of the maps of the kind at all.
+
+In a world with a cycle, once a walk has gone all ways of the cycle, there is no further walk that
+leaves one map of the first three kinds. For there is a map in which each step along a new way
+came to a new place. This map is a tree, so it is planar and keeps the path axiom. Wherever the
+walk goes on, the next new way can lead to one more new place, where that is seen which the agent
+sees.
 
 {table}
 """
 PREFERRED = """\
 ## Does minimality prefer the real map?
 
-The best maps are the closed ones that have the fewest exceptions to consistent boundaries, then the fewest paths, then
-the fewest places. If no map is closed, they are the best so far, which have pending gateways. Where another map is
-preferred, the cell has its exceptions, paths and places, and then those of the real one.
+The best maps are the closed ones that have the fewest exceptions to consistent boundaries, then
+the fewest paths, then the fewest places. If no map is closed, they are the best so far, in which
+gateways may be pending. `one of 2` says that the real map and another one are best. If it is not
+among the best, the cell has what they have of these three, and then what the real map has.
 
 {table}
 
@@ -67,33 +80,38 @@ preferred, the cell has its exceptions, paths and places, and then those of the 
 PEERS = """\
 ## Beside it: learning an automaton without reset
 
-[AALpy](https://github.com/DES-Lab/AALpy) {aalpy} learns automata. Its algorithm hW needs no reset, so it can explore as a
-robot does. Here it walks through the same worlds. An input is a turn. If there is a gateway, the agent travels through
-it, and the output is what is seen beyond; otherwise the agent stays where it is. A state of the world is a dstate: a
-place, and the gateway where the agent stands. *Smallest* is the number of classes of dstates that no walk tells apart,
-so no automaton that predicts all walks has fewer states. *Learned* is the number of states of the automaton with which
-the algorithm ended, and *moves* is the number of travels until then, with those of the last test. A hypothesis is
-believed if {tested} random inputs do not refute it (AALpy's `RandomhWOracle`; the seed is {seed}). The last
-automaton was compared with the world: it is marked if it predicts something wrong.
+[AALpy](https://github.com/DES-Lab/AALpy) {aalpy} learns automata. Its algorithm hW needs no
+reset, so it can explore a world as a robot does. Here it explores the same worlds. An input is a
+turn. If there is a gateway, the agent travels through it, and the output is what is seen beyond;
+if not, the agent stays where it is. With a compass, the output also has the direction of the
+gateway stood at.
+
+A state of the world is a dstate: a place, and the gateway where the agent stands. *Smallest* is
+the number of classes of dstates that no walk tells apart: an automaton that predicts each walk
+rightly has no fewer states. *Learned* is the number of states of the automaton with which the
+algorithm ended, and *moves* is how many times it travelled until then. It ends when {tested}
+random inputs do not refute its automaton (AALpy's `RandomhWOracle`; seed {seed}). The automaton
+was then compared with the world, and is marked if it predicts something wrong.
 
 {table}
 
 {sums}
 
-In turns a symmetric world looks the same from several sides, and the smallest automaton makes one state of dstates
-that only a symmetry joins. This is what the paper's section V says of minimal automata: such an automaton predicts
-everything right, and is not the map. It is one answer, and tells nothing of how many maps explain the walk.
+In turns, a symmetric world looks the same from several sides. The smallest automaton has one
+state for dstates that a symmetry exchanges. It predicts everything rightly, but it is not the
+map, as it takes several places for one. (On minimal automata see section V of the paper.) Such a
+learner gives one automaton, and does not tell how many maps explain its walk.
 """
 NO_PEERS = """\
 ## Beside it: learning an automaton without reset
 
-These columns are missing, as AALpy was not installed when the atlas was made. It comes with the extra `peers`:
-`make atlas` installs it.
+These columns are missing, as AALpy was not installed when the atlas was made, or was not asked.
+It comes with the extra `peers`, which `make atlas` installs.
 """
 STEPS = """\
 ## Step by step
 
-The number of maps after each step, from step 0: `1 x12` stands for twelve times 1.
+The number of maps after each step, from step 0. `1 x12` stands for 1, twelve times.
 
 {blocks}
 """
@@ -131,8 +149,7 @@ def page(data: dict[str, Any]) -> Iterator[str]:
         )
     ]
     if data["fault"]:
-        more = f"{len(rows)} of {data['worlds']} worlds"
-        parts.append(f"**This atlas is partial ({data['fault']}): it has {more}.**\n")
+        parts.append(f"**partial: {data['fault']}; {len(rows)} of {data['worlds']} worlds**\n")
     parts.append(LEFT.format(table=_table(_left_head(), _left(rows))))
     parts.append(
         SETTLING.format(living=data["living"], table=_table(_settling_head(), _settling(rows)))
@@ -350,9 +367,11 @@ def _cuts(rows: Sequence[dict[str, Any]]) -> Iterator[str]:
         for kind in KNOWLEDGE:
             counted = walk["maps"][kind]
             if counted["why"] == "maps":
-                yield f"- {where}: {kind}: more than {counted['more_than']:,} maps after step {counted['stopped']}"
+                more = f"more than {counted['more_than']:,} maps after step {counted['stopped']}"
+                yield f"- {where}: {kind}: {more}"
             elif counted["why"]:
-                yield f"- {where}: {kind}: counted to step {counted['stopped'] - 1} ({counted['why']})"
+                last = f"counted to step {counted['stopped'] - 1} ({counted['why']})"
+                yield f"- {where}: {kind}: {last}"
         if not walk["whole"]:
             yield f"- {where}: it ended after {walk['steps']} steps, before it had gone every way"
         for kind in KINDS:

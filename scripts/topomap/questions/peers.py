@@ -20,6 +20,7 @@ from topomap.runtime.watch import Watch
 from topomap.worlds.census import classes, look
 
 MOST_INPUTS = 500_000
+PATIENCE = 4  # times as long as other parts of the work may take, a learner may
 TESTED = 200  # random inputs after which a hypothesis is believed: AALpy's default
 BLOCKED = "no gateway there"
 
@@ -99,7 +100,7 @@ def learned(
         return made(None, None, "one state")
     alphabet = list(range(world.slots))
     enough = False
-    with within(watch, seconds) as attempt, _drawn(seed):
+    with within(watch, PATIENCE * seconds) as attempt, _drawn(seed):
         try:
             automaton = run_hW(
                 alphabet, agent, oracle, "mealy", query_for_initial_state=False, print_level=0
