@@ -224,7 +224,7 @@ def quick(walk):
 
 
 @pytest.mark.parametrize(
-    ("number", "seed"), [(60, 3), pytest.param(400, 4, marks=pytest.mark.long)]
+    ("number", "seed"), [(80, 9), pytest.param(400, 4, marks=pytest.mark.long)]
 )
 def test_further_walks_against_all_walks(number, seed):
     kinds = set()
@@ -382,7 +382,7 @@ def test_a_learner_is_ended_by_its_limits(monkeypatch):
     monkeypatch.undo()
     pytest.importorskip("aalpy")
     made = environment("grid", 6, 6)
-    told = peers.learned(made.map, ((0, 0), 1), True, 0, 0.05, Watch())
+    told = peers.learned(made.map, ((0, 0), 1), True, 0, 0.001, Watch())
     assert (told.states, told.why) == (None, "timeout")
 
 

@@ -18,7 +18,7 @@ from topomap.runtime.limits import MOST_STEPS
 if TYPE_CHECKING:
     from topomap.api.atlas import World
 
-MOST, SECONDS, STEPS = 20_000, 10.0, 200
+MOST, SECONDS, STEPS = 10_000, 10.0, 200
 
 
 def add(group: Any) -> None:

@@ -231,13 +231,13 @@ def settled(walk: Walk, kind: str, counted: Counted, seconds: float, watch: Watc
     compass = kind == "compass"
     experience, truth = walk.seen(compass)
     found: list[tuple[DState, ...]] = []
-    many: int | None = None
+    many, why = None, counted.why
     if (living := counted.living) is not None:
         level = [one for one in living if one.form.closed or kind != "closed"]
         many = len(level)
         found = [_at(one, experience.slots) for one in level[: MOST_LIVING + 1]]
     elif kind == "closed":
-        with within(watch, seconds):
+        with within(watch, seconds) as attempt:
             query = Query(frozenset({"closed"}))
             for one_map in solving.hypotheses(experience, query, watch):
                 if one_map is not None:
@@ -246,20 +246,21 @@ def settled(walk: Walk, kind: str, counted: Counted, seconds: float, watch: Watc
                     break
             else:
                 many = len(found)
+        why = attempt.fault
     if many == 0:
         return Settled("no map", 0, 0)
     real = walk.real(kind)
     others = None if many is None else many - real
     if not real:
         some = kind != "closed" or found
-        return Settled("others", many, others) if some else Settled(None, why=counted.why)
+        return Settled("others", many, others) if some else Settled(None, why=why)
     if others == 0:
         return Settled("one", many, 0)
     # The unfolding lives with whatever is known, but it is not closed if the world is not a tree.
     first = [unfolding(experience)] if kind != "closed" else []
     tried = [at for at in dict.fromkeys([*first, *found]) if at != truth][:MOST_LIVING]
     if not tried:
-        return Settled(None, many, others, why=counted.why)
+        return Settled(None, many, others, why=why)
     try:
         with within(watch, seconds) as attempt:
             standings = [standing(experience, at) for at in tried]
