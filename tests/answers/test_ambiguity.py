@@ -1,6 +1,7 @@
 """How ambiguous walks are: counts against the slow search, further walks against all walks, and
 what a learner of automata comes to."""
 
+import itertools
 import random
 
 import pytest
@@ -8,15 +9,15 @@ from conftest import TRIED, Truth, plain
 from oracles.brute_force import Hypothesis, tree
 from oracles.worlds import random_world
 from topomap.model.experience import Experience
-from topomap.questions import ambiguity, peers
+from topomap.questions import ambiguity, peers, refuting
 from topomap.questions.ambiguity import Walk
 from topomap.questions.machine import Work
-from topomap.questions.refuting import refute
+from topomap.questions.refuting import Lineage, refute
 from topomap.questions.robot import reached
 from topomap.questions.standings import standing
 from topomap.runtime.watch import Watch
 from topomap.worlds import route
-from topomap.worlds.environment import Environment, environment, grid, lattice, maze
+from topomap.worlds.environment import Environment, environment, grid, lattice, maze, world
 
 MOST, LONG = 1000, 60.0
 FURTHER = 3  # steps of further walks, of which all are tried
@@ -141,25 +142,25 @@ def test_one_since():
 
 def extended(walk, turns):
     """The walk, and these turns after it."""
-    world, (place, slot) = walk.environment.map, walk.start
+    links, (place, slot) = walk.environment.map.links, walk.start
     for out in walk.route:
-        place, slot = world.links[place, out]
+        place, slot = links[place, out]
     more = []
     for turn in turns:
-        more.append((slot + turn) % world.slots)
-        place, slot = world.links[place, more[-1]]
+        more.append((slot + turn) % walk.environment.map.slots)
+        place, slot = links[place, more[-1]]
     return Walk(walk.environment, walk.start, [*walk.route, *more])
 
 
 def further(walk, length):
     """All further walks of that many steps, as turns."""
-    world = walk.environment.map
+    made = walk.environment.map
     walks = [()]
     for _ in range(length):
         walks = [
             (*turns, turn)
             for turns in walks
-            for turn in sorted(world.view(extended(walk, turns).stands(False).dstate))
+            for turn in sorted(made.view(extended(walk, turns).stands(False).dstate))
         ]
     return walks
 
@@ -229,13 +230,111 @@ def quick(walk):
 def test_further_walks_against_all_walks(number, seed):
     kinds = set()
     for walk in random_walks(number, seed, 16):
-        world = walk.environment.map
-        if world.path_axiom_fault() or max(map(len, world.stars.values())) > 4 or not quick(walk):
+        made = walk.environment.map
+        if made.path_axiom_fault() or max(map(len, made.stars.values())) > 4 or not quick(walk):
             continue
         for kind in ambiguity.KINDS:
             kinds.add(further_walk_is_right(walk, kind).kind)
             TRIED["further walks held against all walks"] += 1
     assert kinds == {"one", "walk", "never", "others", "no map"}
+
+
+def refuted_by(real, other, turns):
+    """Whether a map predicts something else than a walk sees, step by step."""
+    at, there = real.start, other.start
+    for turn in turns:
+        at, there = real.after(at, turn), other.after(there, turn)
+        predicted = other.look(there)
+        if predicted is not None and predicted != real.look(at):
+            return True
+    return False
+
+
+def there_and_back(walk, draw, steps):
+    """A further walk that often goes back."""
+    turns = []
+    for _ in range(steps):
+        stands = extended(walk, turns).stands(False)
+        view = sorted(stands.world.view(stands.dstate))
+        turns.append(0 if turns and draw.random() < 0.4 else draw.choice(view))
+    return tuple(turns)
+
+
+@pytest.mark.parametrize(
+    ("number", "seed"), [(1200, 5), pytest.param(10_000, 6, marks=pytest.mark.long)]
+)
+def test_a_map_is_refuted_if_and_only_if_none_comes_of_it(number, seed):
+    """Also where the walk goes through its pending gateways, and comes back."""
+    draw = random.Random(seed)
+    beyond = both = 0
+    for walk in random_walks(number, seed, 9):
+        if walk.environment.map.path_axiom_fault() or not quick(walk):
+            continue
+        for kind in ambiguity.KNOWLEDGE:
+            experience, _ = walk.seen(kind == "compass")
+            real = Lineage(walk.stands(kind == "compass"))
+            turns = there_and_back(walk, draw, 8)
+            lives = left(walk, kind, turns)
+            for at in levels_of(experience, kind)[-1]:
+                other = Lineage(standing(experience, at))
+                refuted = refuted_by(real, other, turns)
+                assert refuted == (at not in lives)
+                states, state = [], other.start
+                for turn in turns:
+                    state = other.after(state, turn)
+                    states.append(bool(state[1]))
+                back = any(one and not two for one, two in itertools.pairwise(states))
+                beyond += back
+                both += back and refuted
+    assert beyond > 500
+    assert both > 5
+
+
+def test_a_walk_is_told_where_the_shortest_takes_too_long(monkeypatch):
+    """It refutes all maps, one after the other, and no walk has fewer steps than is told."""
+    longer = 0
+    for walk in [tour_of(lattice("hexagons", 2, 2)), *random_walks(120, 9, 16)]:
+        made = walk.environment.map
+        if made.path_axiom_fault() or len(counted(walk, "all").level) > 300:
+            continue
+        for kind in ("all", "closed"):
+            told = ambiguity.settled(walk, kind, counted(walk, kind), LONG, Watch())
+            if told.kind != "walk":
+                continue
+            with monkeypatch.context() as patch:
+                patch.setattr(refuting, "MOST_WORK", 10)
+                other = ambiguity.settled(walk, kind, counted(walk, kind), LONG, Watch())
+            assert other.kind == "walk"
+            assert other.refuted.at_least <= len(told.refuted.walk) <= len(other.refuted.walk)
+            longer += not other.refuted.shortest
+            experience, truth = walk.seen(False)
+            level = counted(walk, "all").level
+            others = [tuple(divmod(g, made.slots) for g in one.visit.gateways()) for one in level]
+            others = [
+                at
+                for at in others
+                if at != truth and (kind == "all" or hypothesis(experience, at).closed())
+            ]
+            real = Lineage(walk.stands(False))
+            for at in others:
+                lineage = Lineage(standing(experience, at))
+                assert refuted_by(real, lineage, other.refuted.walk)
+    assert longer
+
+
+def test_a_world_that_is_not_planar_is_none_of_the_planar_maps():
+    """Two places with three ways in one order at both: a torus is needed to draw them."""
+    ways = {(0, slot): (1, slot) for slot in (0, 2, 4)}
+    made = world(6, ways | {end: out for out, end in ways.items()})
+    assert made.genus() == 1
+    walk = walk_of(made, 9, 2)
+    assert walk.whole()
+    kinds = {
+        kind: ambiguity.settled(walk, kind, counted(walk, kind, most), LONG, Watch()).kind
+        for kind in ("all", "planar")
+        for most in (1, MOST)
+    }
+    assert kinds == {"all": "never", "planar": "others"}
 
 
 def tour_of(made):
@@ -322,12 +421,12 @@ def test_what_is_preferred(walk, knowledge):
 
 
 def test_a_random_walk_ends_when_it_has_gone_every_way():
-    world = grid(2, 3).map
-    taken = ambiguity.until_all(world, (0, 0), 0, 1000)
-    walk = Walk(Environment("test", (), world), ((0, 0), 1), taken)
+    made = grid(2, 3).map
+    taken = ambiguity.until_all(made, (0, 0), 0, 1000)
+    walk = Walk(Environment("test", (), made), ((0, 0), 1), taken)
     assert walk.whole()
     assert not Walk(walk.environment, walk.start, taken[:-1]).whole()
-    assert ambiguity.until_all(world, (0, 0), 0, 5) == taken[:5]
+    assert ambiguity.until_all(made, (0, 0), 0, 5) == taken[:5]
 
 
 def test_what_ends_the_whole_work_ends_it_in_a_part_too():

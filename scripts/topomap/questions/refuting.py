@@ -14,7 +14,7 @@ from dataclasses import dataclass
 
 from topomap.model.topology import Gateway
 from topomap.questions.machine import Spent, Work
-from topomap.questions.standings import Prediction, Standing, shape, sight
+from topomap.questions.standings import Prediction, Standing, sight
 
 MOST_WORK = 300_000  # moves of maps, in the search for the shortest walk
 # Where the agent is in a map: a dstate; or beyond a pending gateway, of each step there, by how
@@ -72,15 +72,12 @@ class Refuted:
 def refute(real: Standing, others: Iterable[Standing], work: Work) -> Refuted:
     """The shortest walk in the real world that refutes all of these maps, which live so far; if it
     takes more work than it may to find it, some walk that does."""
-    alike: dict[object, list[Standing]] = {}
-    for other in others:
-        alike.setdefault(shape(other), []).append(other)
-    world, lineages = Lineage(real), [Lineage(same[0]) for same in alike.values()]
+    world, lineages = Lineage(real), [Lineage(other) for other in others]
     never, farthest = 0, 0
-    for lineage, same in zip(lineages, alike.values(), strict=True):
+    for lineage in lineages:
         walk = difference(world, world.start, lineage, lineage.start, work)
         if walk is None:
-            never += len(same)
+            never += 1
         else:
             farthest = max(farthest, len(walk))
     if never:
