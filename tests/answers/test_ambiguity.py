@@ -12,7 +12,7 @@ from topomap.model.experience import Experience
 from topomap.questions import ambiguity, peers, refuting
 from topomap.questions.ambiguity import Walk
 from topomap.questions.machine import Work
-from topomap.questions.refuting import Lineage, refute
+from topomap.questions.refuting import Lineage, difference, refute
 from topomap.questions.robot import reached
 from topomap.questions.standings import standing
 from topomap.runtime.watch import Watch
@@ -266,7 +266,7 @@ def there_and_back(walk, draw, steps):
 def test_a_map_is_refuted_if_and_only_if_none_comes_of_it(number, seed):
     """Also where the walk goes through its pending gateways, and comes back."""
     draw = random.Random(seed)
-    beyond = both = 0
+    beyond = both = away = 0
     for walk in random_walks(number, seed, 9):
         if walk.environment.map.path_axiom_fault() or not quick(walk):
             continue
@@ -286,8 +286,28 @@ def test_a_map_is_refuted_if_and_only_if_none_comes_of_it(number, seed):
                 back = any(one and not two for one, two in itertools.pairwise(states))
                 beyond += back
                 both += back and refuted
+                if not refuted and state[1]:
+                    away += still_refutable(real, other, turns)
     assert beyond > 500
     assert both > 5
+    assert away > 10
+
+
+def still_refutable(real, other, turns):
+    """Beyond a pending gateway a map is refuted by some walk if it was before; what it is."""
+    at, there = real.start, other.start
+    for turn in turns:
+        at, there = real.after(at, turn), other.after(there, turn)
+    work = Work(Watch(), 10**6)
+    before = difference(real, real.start, other, other.start, work)
+    after = difference(real, at, other, there, work)
+    assert (before is None) == (after is None)
+    if after is None:
+        return False
+    assert after[0] == there[1][-1]
+    assert refuted_by(real, other, (*turns, *after))
+    assert not refuted_by(real, other, (*turns, *after[:-1]))
+    return True
 
 
 def test_a_walk_is_told_where_the_shortest_takes_too_long(monkeypatch):
@@ -301,12 +321,6 @@ def test_a_walk_is_told_where_the_shortest_takes_too_long(monkeypatch):
             told = ambiguity.settled(walk, kind, counted(walk, kind), LONG, Watch())
             if told.kind != "walk":
                 continue
-            with monkeypatch.context() as patch:
-                patch.setattr(refuting, "MOST_WORK", 10)
-                other = ambiguity.settled(walk, kind, counted(walk, kind), LONG, Watch())
-            assert other.kind == "walk"
-            assert other.refuted.at_least <= len(told.refuted.walk) <= len(other.refuted.walk)
-            longer += not other.refuted.shortest
             experience, truth = walk.seen(False)
             level = counted(walk, "all").level
             others = [tuple(divmod(g, made.slots) for g in one.visit.gateways()) for one in level]
@@ -316,9 +330,16 @@ def test_a_walk_is_told_where_the_shortest_takes_too_long(monkeypatch):
                 if at != truth and (kind == "all" or hypothesis(experience, at).closed())
             ]
             real = Lineage(walk.stands(False))
-            for at in others:
-                lineage = Lineage(standing(experience, at))
-                assert refuted_by(real, lineage, other.refuted.walk)
+            for most in (0, 10, 30, 100, 300, 1000):
+                with monkeypatch.context() as patch:
+                    patch.setattr(refuting, "MOST_WORK", most)
+                    other = ambiguity.settled(walk, kind, counted(walk, kind), LONG, Watch())
+                assert other.kind == "walk"
+                assert other.refuted.at_least <= len(told.refuted.walk) <= len(other.refuted.walk)
+                longer += not other.refuted.shortest
+                for at in others:
+                    lineage = Lineage(standing(experience, at))
+                    assert refuted_by(real, lineage, other.refuted.walk)
     assert longer
 
 
@@ -366,6 +387,19 @@ def test_a_further_walk_that_is_known():
         if one.form.closed
     }
     assert begun & was_closed == {truth[: len(walk.route) + 1]}
+
+
+def test_closed_maps_are_found_where_the_count_was_cut(monkeypatch):
+    walk = tour_of(lattice("hexagons", 2, 2))
+    cut = counted(walk, "all", 5)
+    assert cut.why == "maps"
+    told = ambiguity.settled(walk, "closed", cut, LONG, Watch())
+    assert (told.kind, told.living, told.tried) == ("walk", 14, 13)
+    monkeypatch.setattr(ambiguity, "MOST_LIVING", 6)
+    told = ambiguity.settled(walk, "closed", cut, LONG, Watch())
+    assert (told.living, told.others) == (None, None)
+    assert told.tried in (5, 6)
+    assert told.document()["shortest"] is False
 
 
 def test_no_walk_leaves_one_map_of_a_world_with_a_cycle():
