@@ -3,6 +3,7 @@ what a learner of automata comes to."""
 
 import itertools
 import random
+from dataclasses import replace
 
 import pytest
 from conftest import TRIED, Truth, plain
@@ -393,13 +394,16 @@ def test_closed_maps_are_found_where_the_count_was_cut(monkeypatch):
     walk = tour_of(lattice("hexagons", 2, 2))
     cut = counted(walk, "all", 5)
     assert cut.why == "maps"
+    cut = replace(cut, most=MOST)
     told = ambiguity.settled(walk, "closed", cut, LONG, Watch())
     assert (told.kind, told.living, told.tried) == ("walk", 14, 13)
     monkeypatch.setattr(ambiguity, "MOST_LIVING", 6)
     told = ambiguity.settled(walk, "closed", cut, LONG, Watch())
-    assert (told.living, told.others) == (None, None)
+    assert (told.met, told.living, told.others) == (14, 14, 13)
     assert told.tried in (5, 6)
     assert told.document()["shortest"] is False
+    told = ambiguity.settled(walk, "closed", replace(cut, most=8), LONG, Watch())
+    assert (told.met, told.living, told.others) == (9, None, None)
 
 
 def test_no_walk_leaves_one_map_of_a_world_with_a_cycle():

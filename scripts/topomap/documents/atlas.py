@@ -33,7 +33,8 @@ The *random walk* goes on until it has gone every way, but it ends after {steps}
 - **closed**: those of the first kind that have no pending gateway.
 
 A count is exact. It stops where it is told that there are more than {most} maps, or where the
-{seconds} seconds are over that each part of the work may take; then the page names the step.
+{seconds} seconds are over that each part of the work may take; then the page names the step. The
+closed maps at the end are looked for again by themselves, where the count of all maps stopped.
 """
 LEFT = """\
 ## How many maps live at the end of the walk
@@ -196,22 +197,25 @@ def _left_head() -> list[str]:
 
 def _left(rows: Sequence[dict[str, Any]]) -> Iterator[Sequence[Any]]:
     for row, walk in _walks(rows):
-        counts = [_last(walk["maps"][kind], "maps") for kind in KNOWLEDGE]
-        closed = walk["settling"]["closed"]["living"]
-        counts.append(_last(walk["maps"]["all"], "closed") if closed is None else f"{closed:,}")
+        counts = [_last(walk["maps"][kind]) for kind in KNOWLEDGE]
+        counts.append(_closed(walk["settling"]["closed"]))
         yield row["name"], row["places"], row["ways"], WALKS[walk["walk"]], walk["steps"], *counts
 
 
-def _last(counted: dict[str, Any], what: str) -> str:
+def _last(counted: dict[str, Any]) -> str:
     """The number at the end, or how far it was counted."""
     if counted["stopped"] is None:
-        return f"{counted[what][-1]:,}"
-    if what == "maps" and counted["more_than"] is not None:
+        return f"{counted['maps'][-1]:,}"
+    if counted["more_than"] is not None:
         return f"more than {counted['more_than']:,} (step {counted['stopped']})"
-    if what == "maps":
-        last = f"{counted[what][-1]:,}"
-        return f"open ({last} after step {counted['stopped'] - 1})"
-    return f"open (counted to step {counted['stopped'] - 1})"
+    return f"open ({counted['maps'][-1]:,} after step {counted['stopped'] - 1})"
+
+
+def _closed(told: dict[str, Any]) -> str:
+    """The number of closed maps at the end, or how many of them were found."""
+    if told["living"] is None:
+        return f"{told['met']:,} or more" if told["met"] else f"open ({told['why']})"
+    return f"{told['living']:,}"
 
 
 def _settling_head() -> list[str]:

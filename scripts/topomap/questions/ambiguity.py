@@ -195,12 +195,14 @@ class Settled:
 
     ``kind``: "one", there is one, the real one; "walk", ``refuted.walk`` leaves the real one;
     "never", ``refuted.never`` of the others can be refuted by no walk; "others", the real one is
-    none of them; "no map", there is none; None if that is open, as ``why`` says. ``living`` is how
-    many maps there are, and ``others`` how many that are not the real one (None if they were not
-    counted); ``tried``, of how many others it was found out what refutes them.
+    none of them; "no map", there is none; None if that is open, as ``why`` says. ``met`` is how
+    many of these maps were found, ``living`` how many there are, and ``others`` how many that are
+    not the real one (both None if they were not counted); ``tried``, of how many others it was
+    found out what refutes them.
     """
 
     kind: str | None
+    met: int
     living: int | None = None
     others: int | None = None
     tried: int = 0
@@ -213,6 +215,7 @@ class Settled:
         walk = found.walk if found and self.kind == "walk" else None
         return {
             "kind": self.kind,
+            "met": self.met,
             "living": self.living,
             "others": self.others,
             "tried": self.tried,
@@ -231,45 +234,46 @@ def settled(walk: Walk, kind: str, counted: Counted, seconds: float, watch: Watc
     compass = kind == "compass"
     experience, truth = walk.seen(compass)
     found: list[tuple[DState, ...]] = []
-    many, why = None, counted.why
+    many, met, why = None, 0, counted.why
     if (living := counted.living) is not None:
         level = [one for one in living if one.form.closed or kind != "closed"]
-        many = len(level)
+        many = met = len(level)
         found = [_at(one, experience.slots) for one in level[: MOST_LIVING + 1]]
     elif kind == "closed":
         with within(watch, seconds) as attempt:
             query = Query(frozenset({"closed"}))
             for one_map in solving.hypotheses(experience, query, watch):
                 if one_map is not None:
-                    found.append(one_map.at)
-                if len(found) > MOST_LIVING:
+                    met += 1
+                    found += [one_map.at] * (len(found) <= MOST_LIVING)
+                if met > counted.most:
                     break
             else:
-                many = len(found)
+                many = met
         why = attempt.fault
     if many == 0:
-        return Settled("no map", 0, 0)
+        return Settled("no map", 0, 0, 0)
     real = walk.real(kind)
     others = None if many is None else many - real
     if not real:
         some = kind != "closed" or found
-        return Settled("others", many, others) if some else Settled(None, why=why)
+        return Settled("others", met, many, others) if some else Settled(None, met, why=why)
     if others == 0:
-        return Settled("one", many, 0)
+        return Settled("one", met, many, 0)
     # The unfolding lives with whatever is known, but it is not closed if the world is not a tree.
     first = [unfolding(experience)] if kind != "closed" else []
     tried = [at for at in dict.fromkeys([*first, *found]) if at != truth][:MOST_LIVING]
     if not tried:
-        return Settled(None, many, others, why=why)
+        return Settled(None, met, many, others, why=why)
     try:
         with within(watch, seconds) as attempt:
             standings = [standing(experience, at) for at in tried]
             refuted = refute(walk.stands(compass), standings, Work(watch, MOST_WORK))
     except Spent:
-        return Settled(None, many, others, why="effort")
+        return Settled(None, met, many, others, why="effort")
     if attempt.fault:
-        return Settled(None, many, others, why=attempt.fault)
-    return Settled("never" if refuted.never else "walk", many, others, len(tried), refuted)
+        return Settled(None, met, many, others, why=attempt.fault)
+    return Settled("never" if refuted.never else "walk", met, many, others, len(tried), refuted)
 
 
 def _at(one: Living, slots: int) -> tuple[DState, ...]:
