@@ -525,7 +525,17 @@ def test_a_learner_is_ended_by_its_limits(monkeypatch):
 
 def test_a_learner_does_not_begin_where_all_looks_alike():
     told = learned(grid(1, 2), False)
-    assert (told.least, told.inputs, told.states, told.why) == (1, 0, None, "one state")
+    assert (told.least, told.states, told.right, told.why) == (1, None, None, "all alike")
+    assert told.tests == peers.TESTED
+    assert told.inputs == peers.TESTED + 4  # each turn once
+
+
+def test_a_learner_that_sees_no_difference_in_time(monkeypatch):
+    """Where there is one, but far away."""
+    monkeypatch.setattr(peers, "TESTED", 1)
+    told = learned(grid(1, 9), True)
+    assert told.least > 1
+    assert (told.states, told.why) == (None, "all alike")
 
 
 class State:

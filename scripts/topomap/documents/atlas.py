@@ -320,7 +320,7 @@ def _peers(rows: Sequence[dict[str, Any]]) -> Iterator[Sequence[Any]]:
         yield cells
 
 
-WHY_LEARNED = {"one state": "not begun: all looks alike"}
+WHY_LEARNED = {"all alike": "not begun: all looked alike"}
 
 
 def _peers_sums(rows: Sequence[dict[str, Any]]) -> str:

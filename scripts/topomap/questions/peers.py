@@ -23,6 +23,7 @@ MOST_INPUTS = 500_000
 PATIENCE = 4  # times as long as other parts of the work may take, a learner may
 TESTED = 200  # random inputs after which a hypothesis is believed: AALpy's default
 BLOCKED = "no gateway there"
+INPUTS, ALIKE = "inputs", "all alike"  # why a learner is ended, but for lack of time
 
 
 @dataclass(frozen=True)
@@ -78,7 +79,7 @@ def learned(
         def step(self, turn: int) -> Hashable:
             watch.tick()
             if self.inputs >= MOST_INPUTS:
-                raise _Enough
+                raise _Enough(INPUTS)
             self.inputs += 1
             place, slot = self.dstate
             end = world.links.get((place, (slot + turn) % world.slots))
@@ -88,32 +89,41 @@ def learned(
             self.moves += 1
             return looks[end]
 
-    agent, oracle = Agent(), RandomhWOracle(TESTED)
+    class Tests(RandomhWOracle):  # type: ignore[misc]
+        """AALpy's tests of a hypothesis. The first one has one state; where its test finds nothing
+        against it, AALpy 2.0 ends with an error of its own, and so it is ended before that."""
+
+        begun = False
+
+        def find_cex(self, hypothesis: Any) -> Any:
+            found = super().find_cex(hypothesis)
+            if found is None and not self.begun:
+                raise _Enough(ALIKE)
+            self.begun = True
+            return found
+
+    agent, oracle = Agent(), Tests(TESTED)
 
     def made(states: int | None, right: bool | None, why: str | None = None) -> Learned:
         counts = agent.inputs, agent.moves, oracle.num_steps
         return Learned(*counts, states, dstates, least, right, why)
 
-    if least == 1:
-        # Its first hypothesis, of one state, is right, and without a counterexample it does not
-        # go on: an error, in AALpy 2.0.
-        return made(None, None, "one state")
     alphabet = list(range(world.slots))
-    enough = False
+    why = None
     with within(watch, PATIENCE * seconds) as attempt, _drawn(seed):
         try:
             automaton = run_hW(
                 alphabet, agent, oracle, "mealy", query_for_initial_state=False, print_level=0
             )
-        except _Enough:
-            enough = True
-    if enough or attempt.fault:
-        return made(None, None, "inputs" if enough else attempt.fault)
+        except _Enough as enough:
+            why = str(enough)
+    if why := why or attempt.fault:
+        return made(None, None, why)
     return made(automaton.size, _right(world, looks, agent.dstate, automaton))
 
 
 class _Enough(Exception):
-    """A learner gave as many inputs as it may."""
+    """A learner is ended; the message says why."""
 
 
 @contextmanager
