@@ -2,7 +2,7 @@
 
 import json
 import textwrap
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from itertools import groupby
 from pathlib import Path
 from typing import Any
@@ -294,10 +294,19 @@ def _preferred_sums(rows: Sequence[dict[str, Any]]) -> str:
         alone = sum(one["truth"] and one["maps"] == 1 for one in known)
         among = sum(one["truth"] and one["maps"] > 1 for one in known)
         lines.append(
-            f"- {kind}: after the tour the real map is preferred alone in {alone} of {len(known)} "
-            f"worlds, and it is one of several in {among}; in {len(told) - len(known)} it is open."
+            f"{kind}: after the tour, the real map alone is best in {alone} worlds, it is one of "
+            f"several best maps in {among}, and it is none of them in "
+            f"{len(known) - alone - among}. In {len(told) - len(known)} worlds this is open."
         )
-    return "\n".join(lines)
+    return _items(lines)
+
+
+def _items(texts: Iterable[str]) -> str:
+    """A list, in lines that are not too long."""
+    return "\n".join(
+        textwrap.fill(f"- {text}", WIDTH, subsequent_indent="  ", break_on_hyphens=False)
+        for text in texts
+    )
 
 
 def _peers_head() -> list[str]:
@@ -329,17 +338,21 @@ def _peers_sums(rows: Sequence[dict[str, Any]]) -> str:
     for how in "turns", "compass":
         told = [(row["name"], row["peer"][how]) for row in rows]
         ended = [(name, one) for name, one in told if one["states"] is not None]
+        right = sum(one["right"] for _, one in ended)
         least = sum(one["states"] == one["least"] for _, one in ended)
         whole = sum(one["states"] == one["dstates"] for _, one in ended)
-        few = [one for _, one in ended if 4 * one["states"] == one["dstates"]]
-        quarter = ", ".join(f"{one['states']} of {one['dstates']}" for one in few)
+        few = [
+            f"{name} ({one['states']} of {one['dstates']} states, {one['moves']:,} moves)"
+            for name, one in ended
+            if 4 * one["states"] == one["dstates"]
+        ]
+        quarter = f" It ended at a quarter of the dstates in {len(few)}: {', '.join(few)}."
         lines.append(
-            f"- {how}: it ended in {len(ended)} of {len(told)} worlds; in {least} of them with as "
-            f"many states as the smallest automaton has, and in {whole} with a state for each "
-            f"dstate."
-            + (f" It ended at a quarter of the dstates in {len(few)}: {quarter}." * bool(few))
+            f"{how}: it ended in {len(ended)} of {len(told)} worlds, in {right} of them with an "
+            f"automaton that predicts everything rightly. In {least} it has as many states as the "
+            f"smallest one, and in {whole} a state for each dstate." + quarter * bool(few)
         )
-    return "\n".join(lines)
+    return _items(lines)
 
 
 def _steps(rows: Sequence[dict[str, Any]]) -> Iterator[str]:
