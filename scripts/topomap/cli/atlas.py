@@ -49,8 +49,8 @@ def add(group: Any) -> None:
         "--seconds",
         type=number(float, 0.001),
         metavar="S",
-        help="each count, each search for a further walk or for the best maps, and each learner "
-        f"takes S seconds at most (default: {SECONDS:g})",
+        help="each count, and each search for a further walk or for the best maps, takes S seconds "
+        f"at most, and a learner four times as long (default: {SECONDS:g})",
     )
     add(
         "--steps",
