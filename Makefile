@@ -11,6 +11,8 @@
 # make reasons    count the reasons of explain where there is no map, in docs/questions.md (minutes)
 # make knowledge  count what a compass and odometry leave, docs/knowledge.md and its picture (an hour)
 # make simulate   let robots explore 21 worlds, docs/simulations.json (seconds)
+# make atlas      count how ambiguous walks in 22 worlds are, docs/atlas.json and docs/atlas.md
+#                 (twenty minutes; it installs AALpy, which learns the same worlds)
 # make circumscription   compare both readings of the preference, docs/circumscription.md
 #                 (twenty minutes)
 # make beyond     count what is beyond the paper's table, docs/beyond.json (an hour)
@@ -24,13 +26,14 @@ MAPS    ?= ../shared/maps
 BIN     := .venv/bin
 SETUP   := .venv/set-up
 TOOLS   := .venv/tools
+PEERS   := .venv/peers
 BATCH   := build/instances
 MAKERS  := $(wildcard scripts/topomap/worlds/*.py scripts/topomap/worlds/readers/*.py) $(addprefix scripts/topomap/model/, \
              experience.py topology.py)
 PIP     := $(BIN)/python -m pip --quiet --disable-pip-version-check
 
 .PHONY: all table instances batch test test-long mutate lint figures bench beyond circumscription simulate \
-        knowledge reasons man clean \
+        atlas knowledge reasons man clean \
         committed anew
 .DELETE_ON_ERROR:
 
@@ -64,6 +67,11 @@ $(SETUP): pyproject.toml
 # What the tests and make lint need besides.
 $(TOOLS): $(SETUP)
 	$(PIP) install --editable '.[dev]'
+	touch $@
+
+# What make atlas compares with.
+$(PEERS): $(SETUP)
+	$(PIP) install --editable '.[peers]'
 	touch $@
 
 table: $(SETUP)
@@ -127,6 +135,10 @@ simulate: $(SETUP)
 
 man: $(SETUP)
 	$(BIN)/python -m topomap.cli.manual build/man
+
+atlas: $(PEERS)
+	$(BIN)/topomap atlas instances/atlas.txt --json --output docs/atlas.json
+	$(BIN)/topomap atlas --from docs/atlas.json --output docs/atlas.md
 
 committed: $(SETUP)
 	$(GENERATE) grid 3 3 --route snake -o instances/

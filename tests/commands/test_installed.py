@@ -30,6 +30,7 @@ CALLS = {  # of each subcommand, in this order, as some read what an earlier one
     "explore": ["explore", SNAKE],
     "follow": ["follow", SNAKE, "--no-wait"],
     "simulate": ["simulate", "grid", "1", "3"],
+    "atlas": ["atlas", "{instances}/atlas.txt", "--timeout", "0.5", "-o", "atlas.md"],
     "count": ["count", SNAKE],
     "search": ["search", SNAKE, "--order", "best"],
     "branching": ["branching", SNAKE],
@@ -44,7 +45,7 @@ CALLS = {  # of each subcommand, in this order, as some read what an earlier one
     "import": ["import", "map.graphml"],
 }
 LOG = ROOT / "tests/files/courtyard.csv"
-STATUS = {"clingo": 30, "explore": 1, "table": 3}
+STATUS = {"clingo": 30, "explore": 1, "atlas": 3, "table": 3}
 DRAWN = {"draw", "show", "report", "figures", "export"}  # by the extra
 
 

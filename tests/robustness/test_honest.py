@@ -31,6 +31,7 @@ AT_ONCE = "--timeout", "0.001"
 UNLIMITED = {
     *("generate", "family", "import", "log", "validate", "path"),  # they do not search
     "clingo",  # it is clingo's own word
+    "atlas",  # what it cuts is named in its cells, and its text explains proofs (test_atlas)
     "figures",  # it draws all or, when it is interrupted, says so (test_draw)
 }
 CLAIM = re.compile(r"\b(no|none|only|never|nothing|impossible|certain|all|every)\b", re.IGNORECASE)
@@ -461,6 +462,7 @@ WHOLE = [
     ("follow", GRID, "--no-wait", "--planar"),
     ("simulate", "grid", "1", "3"),
     ("simulate", "list", "{short}"),
+    ("atlas", "{short}", "--no-peers"),
     ("count", GRID, "--planar"),
     ("search", GRID, "--planar"),
     ("search", GRID, "--order", "best"),

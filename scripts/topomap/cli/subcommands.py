@@ -34,6 +34,11 @@ SUBCOMMANDS = {
         "let a robot explore an environment that it does not know, until it has one closed "
         "optimal map, and compare this map with the real one"
     ),
+    "atlas": (
+        "count how many maps explain each step of a tour and of a random walk in several worlds, "
+        "say which further walk leaves the real map alone and whether minimality prefers it, and "
+        "write this as a page or as JSON"
+    ),
     "count": "count the search tree of an exploration, as the paper's Figure 4 does",
     "search": "search the tree of an exploration without clingo, as the paper does",
     "branching": (

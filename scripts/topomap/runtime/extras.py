@@ -9,6 +9,7 @@ MODULES = {
     "draw": ("jinja2", "matplotlib", "numpy", "scipy"),
     "dask": ("distributed",),
     "floorplan": ("PIL", "numpy", "scipy", "skimage", "yaml"),
+    "peers": ("aalpy",),
 }
 
 

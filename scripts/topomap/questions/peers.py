@@ -1,0 +1,157 @@
+"""What a learner of automata without reset makes of a world: AALpy's hW, from the extra ``peers``.
+
+It walks through the world as a robot does, and ends with one automaton. An input is a turn; if
+there is a gateway, the agent leaves by it, and sees what is beyond, and if there is none, it stays
+and sees that. So the states of the world are its dstates, and an automaton that is as small as can
+be has one state for each class of dstates that no walk tells apart.
+"""
+
+import random
+from collections.abc import Hashable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from importlib.metadata import version
+from typing import Any
+
+from topomap.model.topology import Gateway, TopologicalMap
+from topomap.questions.ambiguity import within
+from topomap.runtime.extras import lacking
+from topomap.runtime.watch import Watch
+from topomap.worlds.census import classes, look
+
+MOST_INPUTS = 500_000
+PATIENCE = 4  # times as long as other parts of the work may take, a learner may
+TESTED = 200  # random inputs after which a hypothesis is believed: AALpy's default
+BLOCKED = "no gateway there"
+INPUTS, ALIKE = "inputs", "all alike"  # why a learner is ended, but for lack of time
+
+
+@dataclass(frozen=True)
+class Learned:
+    """What a learner came to: how many ``inputs`` it gave, of which so many were ``moves`` along a
+    way, and so many tested a hypothesis that was believed or refuted; how many ``states`` it
+    learned; of how many there are in truth, and in the smallest automaton that is ``right``; and
+    whether what it learned is. If it did not end, ``why``, and what it learned is None."""
+
+    inputs: int
+    moves: int
+    tests: int
+    states: int | None
+    dstates: int
+    least: int
+    right: bool | None
+    why: str | None = None
+
+    def document(self) -> dict[str, Any]:
+        """What is told of it."""
+        return {**vars(self)}
+
+
+def peer() -> str | None:
+    """The version of AALpy, if it is installed."""
+    return None if lacking("peers") else version("aalpy")
+
+
+def learned(
+    world: TopologicalMap, start: Gateway, compass: bool, seed: int, seconds: float, watch: Watch
+) -> Learned:
+    """Let AALpy's hW learn a world, from a gateway on."""
+    from aalpy import SUL, RandomhWOracle, run_hW
+
+    looks: dict[Gateway, Hashable] = {
+        gateway: (look(world, gateway), gateway[1] if compass else None)
+        for gateway in world.gateways()
+    }
+    dstates, least = len(looks), len({*classes(world, looks).values()})
+
+    class Agent(SUL):  # type: ignore[misc]
+        """An agent in the world, as AALpy wants it. It is never set back."""
+
+        inputs = moves = 0
+        dstate = start
+
+        def pre(self) -> None:
+            """A reset, of which there is none."""
+
+        def post(self) -> None:
+            """The end, of which nothing is to be done."""
+
+        def step(self, turn: int) -> Hashable:
+            watch.tick()
+            if self.inputs >= MOST_INPUTS:
+                raise _Enough(INPUTS)
+            self.inputs += 1
+            place, slot = self.dstate
+            end = world.links.get((place, (slot + turn) % world.slots))
+            if end is None:
+                return BLOCKED
+            self.dstate = end
+            self.moves += 1
+            return looks[end]
+
+    class Tests(RandomhWOracle):  # type: ignore[misc]
+        """AALpy's tests of a hypothesis. The first one has one state; where its test finds nothing
+        against it, AALpy 2.0 ends with an error of its own, and so it is ended before that."""
+
+        begun = False
+
+        def find_cex(self, hypothesis: Any) -> Any:
+            found = super().find_cex(hypothesis)
+            if found is None and not self.begun:
+                raise _Enough(ALIKE)
+            self.begun = True
+            return found
+
+    agent, oracle = Agent(), Tests(TESTED)
+
+    def made(states: int | None, right: bool | None, why: str | None = None) -> Learned:
+        counts = agent.inputs, agent.moves, oracle.num_steps
+        return Learned(*counts, states, dstates, least, right, why)
+
+    alphabet = list(range(world.slots))
+    why = None
+    with within(watch, PATIENCE * seconds) as attempt, _drawn(seed):
+        try:
+            automaton = run_hW(
+                alphabet, agent, oracle, "mealy", query_for_initial_state=False, print_level=0
+            )
+        except _Enough as enough:
+            why = str(enough)
+    if why := why or attempt.fault:
+        return made(None, None, why)
+    return made(automaton.size, _right(world, looks, agent.dstate, automaton))
+
+
+class _Enough(Exception):
+    """A learner is ended; the message says why."""
+
+
+@contextmanager
+def _drawn(seed: int) -> Iterator[None]:
+    """Have Python's own random numbers, from which AALpy draws, begin with a seed."""
+    state = random.getstate()
+    random.seed(seed)
+    try:
+        yield
+    finally:
+        random.setstate(state)
+
+
+def _right(
+    world: TopologicalMap, looks: dict[Gateway, Hashable], dstate: Gateway, automaton: Any
+) -> bool:
+    """Whether an automaton, from the state in which it is, predicts all that is seen in the world
+    from a dstate on."""
+    met = {(dstate, automaton.current_state)}
+    waiting = [*met]
+    for (place, slot), state in waiting:
+        for turn in range(world.slots):
+            end = world.links.get((place, (slot + turn) % world.slots))
+            seen = BLOCKED if end is None else looks[end]
+            if state.output_fun[turn] != seen:
+                return False
+            pair = end or (place, slot), state.transitions[turn]
+            if pair not in met:
+                met.add(pair)
+                waiting.append(pair)
+    return True
