@@ -165,12 +165,14 @@ class Follower:
             turn: the slot of the gateway by which the agent left where it was before, clockwise
                 of the one where it stood; None for the first view, where the exploration starts.
             landmarks: the landmarks that are seen, as terms of clingo, such as ``"a"``.
-            drop, pick, marker: whether the marker is put down here, is taken up, is seen; of a
-                marker that has a name, the name.
+            drop: whether the marker is put down here; of a marker that has a name, the name.
+            pick: whether the marker is taken up here, or the name.
+            marker: whether the marker is seen here, or the name.
             compass: the compass slot to which the gateway stood at points.
             shift: how far this step moved the agent, as (x, y), in whole numbers of any unit.
             length: how long this step was, in whole units.
-            same, apart: earlier steps after which the agent was at this place, or at another one.
+            same: earlier steps after which the agent was at this place.
+            apart: earlier steps after which it was at another place.
             straight: the pairs of slots of the view whose gateways are on one path. The
                 first view tells them, or no view does; None of a later view: there are none.
             start: whether a new log of the same world begins here; then there is no turn.
@@ -251,7 +253,8 @@ def follow(
         marker: whether the agent carries a marker, for what to do next.
         count_limit: of more hypotheses it is only told that they are more.
         timeout: seconds that the answer to a step may take.
-        drift, stretch: how far shifts and lengths may be wrong, in percent; 10 by default.
+        drift: how far shifts may be wrong, in percent of the way; 10 by default.
+        stretch: how far lengths of one way may differ, in percent; 10 by default.
         tolerance: by how many slots bearings may be wrong; 0 by default.
         parts: what the maps are to have: ``planar``; and ``no_path_axiom``, that a path may hold a
             place twice, and may be circular.

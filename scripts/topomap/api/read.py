@@ -24,7 +24,8 @@ def read(
             ``straight/3``, ``same/2`` and ``apart/2``; ``-`` is standard input.
         noisy: allow what can only be a misreading: a turn to a gateway that was not seen, a view
             without slot 0. For ``solve(..., noise=K)``.
-        drift, stretch: how far shifts and lengths may be wrong, in percent; 10 by default.
+        drift: how far shifts may be wrong, in percent of the way; 10 by default.
+        stretch: how far lengths of one way may differ, in percent; 10 by default.
         tolerance: by how many slots bearings may be wrong; 0 by default, and with ``noisy``.
 
     Returns:

@@ -122,9 +122,12 @@ def simulate(
         marker: whether the robot carries a marker that it may put down.
         bound: what it takes for granted: so many places at most.
         timeout: stop after so many seconds, the walks for comparison too.
-        compass, odometry, lengths: what it measures besides views, as in ``generate``.
-        drift, stretch: how far it takes its shifts and lengths to be wrong, in percent; 10 by
-            default, or as much as ``odometry``.
+        compass: whether it has a compass, as in ``generate``.
+        odometry: whether and how well it measures where steps lead, as in ``generate``.
+        lengths: whether it measures how long steps are, as in ``generate``.
+        drift: how far it takes its shifts to be wrong, in percent of the way; 10 by default, or
+            as much as ``odometry``.
+        stretch: how far it takes lengths of one way to differ, in percent; 10 by default.
         parts: what it takes for granted: ``planar``, ``perpendicular``; and ``no_path_axiom``, that
             a path may hold a place twice, and may be circular.
 

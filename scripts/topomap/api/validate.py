@@ -56,8 +56,9 @@ def validate(path: str | Path, *, drift: int = DRIFT, stretch: int = STRETCH) ->
 
     Parameters:
         path: the file; ``-`` is standard input.
-        drift, stretch: how far shifts and lengths may be wrong, in percent: what is too large for
-            clingo's numbers depends on them.
+        drift: how far shifts may be wrong, in percent of the way: what is too large for clingo's
+            numbers depends on it.
+        stretch: how far lengths of one way may differ, in percent; the same depends on it.
 
     Returns:
         What is wrong with it, and warnings. A file that cannot be read has one fault.

@@ -130,15 +130,19 @@ class Experience:
             views: the slots that are seen after each step, from 0.
             turns: the turn of each step, from 1, in slots clockwise.
             landmarks: the landmarks that are seen after each step, from 0; by default none.
-            drops, picks, markers: the steps after which the marker is put down, taken up, seen; of
-                a marker that has a name, such as ``(4, "coin")``, the step and the name.
+            drops: the steps after which the marker is put down; of a marker that has a name, such
+                as ``(4, "coin")``, the step and the name.
+            picks: those after which it is taken up, in the same form.
+            markers: those after which it is seen, in the same form.
             compass: the compass slot of the gateway stood at after each step, from 0, or None; by
                 default none is told.
             shifts: how far each step, from 1, moved the agent, as (x, y) in whole numbers of any
                 unit, or None; by default none is told.
             lengths: how long each step was, in whole units, or None; by default none is told.
-            same, apart: pairs of steps after which the agent was at one place, or at two.
-            drift, stretch: how far shifts and lengths may be wrong, in percent.
+            same: pairs of steps after which the agent was at one place.
+            apart: pairs of steps after which it was at two places.
+            drift: how far shifts may be wrong, in percent of the way.
+            stretch: how far lengths of one way may differ, in percent.
             assumed: what ``topomap.assume`` has added: statements, as terms that
                 ``encodings/query.lp`` knows, each with whether it holds.
             starts: the steps, from 1, at which a new log of the same world begins.
