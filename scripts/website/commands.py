@@ -46,8 +46,8 @@ def page(name: str) -> str:
     return (
         f"# topomap {name}\n\n{_prose(parser.description or '')}\n\n"
         f"{_usage(parser)}{_example(example)}{_arguments(parser, [], 2)}{_kinds(parser)}"
-        "\n## Exit status\n\n[What the exit statuses mean](../exit-statuses.md) is the same for all "
-        "commands.\n"
+        "\n## Exit status\n\n[What the exit statuses mean](../exit-statuses.md) is the same for "
+        "all commands.\n"
     )
 
 

@@ -39,7 +39,7 @@ REFERENCE = "reference/encodings/paper"
 
 
 def pages() -> dict[str, str]:
-    """The page, by its path in the site. Raises ValueError if ``ORDER`` is not that of the files."""
+    """The page, by its path in the site. Raises ValueError if a file is not in ``ORDER``."""
     there = {path.stem for path in PAPER.glob("*.lp")}
     if there != set(ORDER):
         raise ValueError(f"encodings/paper: not in the order of the page: {there ^ set(ORDER)}")
