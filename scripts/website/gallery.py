@@ -2,9 +2,9 @@
 
     python -m website.gallery
 
-Runs each block of docs/gallery.md in a folder of its own, beside the files that the page and the pages
-to which it links show, and puts the pictures that it draws into docs/gallery/. Exit status: 0 all
-pictures are drawn, 1 a command failed.
+Runs each block of docs/gallery.md in a folder of its own, beside the files that the page and the
+pages to which it links show, and puts the pictures that it draws into docs/gallery/. Exit status:
+0 all pictures are drawn, 1 a command failed.
 """
 
 import os

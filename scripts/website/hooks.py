@@ -11,6 +11,7 @@ from website import api, commands, encodings, notebook, theory
 from website.links import ELSEWHERE, ROOT, for_site, place, targets
 
 ORIGINS: dict[str, str] = {}  # pages of the site that are files of the repository
+FIRST = "docs/first-questions.md"  # what newcomers look for, so the search gives it first
 LANGUAGES = {".lp": "prolog", ".py": "python", ".cff": "yaml", ".toml": "toml"}
 
 
@@ -72,6 +73,8 @@ def on_page_markdown(markdown: str, page: Page, config: MkDocsConfig, files: Fil
     origin = ORIGINS.get(page.file.src_uri)
     if origin is None:
         return markdown
+    if origin == FIRST:
+        page.meta["search"] = {"boost": 4}
     text = for_site(markdown, origin, page.file.src_uri)
     if origin == "encodings/README.md":
         text = re.sub(r"^\|.*\|$", _linked, text, flags=re.M)

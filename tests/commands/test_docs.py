@@ -104,7 +104,9 @@ def test_the_gallery_has_twenty_pictures():
     """Each is on the page, below the command that draws it, and no other one is committed."""
     text = GALLERY.read_text()
     named = re.findall(r"^!\[[^\]]+\]\(gallery/([\w-]+\.svg)\)$", text, re.M)
-    drawn = re.findall(r" -o ([\w-]+\.svg)\b", "".join(block for _, block in blocks(GALLERY, "console")))
+    drawn = re.findall(
+        r" -o ([\w-]+\.svg)\b", "".join(block for _, block in blocks(GALLERY, "console"))
+    )
     assert named == drawn
     assert len(set(named)) == len(named) == 20
     assert {path.name for path in (DOCS / "gallery").iterdir()} == set(named)
