@@ -83,7 +83,8 @@ def _arguments(
         told = ""
         for action in group._group_actions:
             named = _names(parser, action)
-            if action.help == argparse.SUPPRESS or isinstance(action, Sub) or named in without:
+            passed = isinstance(action, Sub | argparse._HelpAction)
+            if action.help == argparse.SUPPRESS or passed or named in without:
                 continue
             if only is None or named in only:
                 help = parser._get_formatter()._expand_help(action) if action.help else ""

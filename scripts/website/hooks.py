@@ -35,6 +35,14 @@ def _filled(item: Any) -> Any:
     return item
 
 
+def _named(item: Any) -> set[str]:
+    """The pages that are in the navigation."""
+    if isinstance(item, str):
+        return {item}
+    parts = item.values() if isinstance(item, dict) else item
+    return {page for part in parts for page in _named(part)}
+
+
 def on_files(files: Files, config: MkDocsConfig) -> Files:
     """Add the pages that are generated, and those that are no files of docs/."""
     ORIGINS.clear()
@@ -50,10 +58,12 @@ def on_files(files: Files, config: MkDocsConfig) -> Files:
         elif file.is_documentation_page() and file.generated_by is None:
             ORIGINS[file.src_uri] = f"docs/{file.src_uri}"
     ORIGINS["tutorial.md"] = "docs/tutorial.ipynb"
+    named = _named(config.nav)
     for path, page in ELSEWHERE.items():
         if path != "docs/tutorial.ipynb" and (ROOT / path).is_file():
             content = (ROOT / path).read_text(encoding="utf-8")
-            files.append(File.generated(config, page, content=content))
+            level = InclusionLevel.UNDEFINED if page in named else InclusionLevel.NOT_IN_NAV
+            files.append(File.generated(config, page, content=content, inclusion=level))
             ORIGINS[page] = path
     for path in sorted(
         {path for page in ORIGINS for path in targets(_text(files, page), ORIGINS[page])}

@@ -3,6 +3,7 @@
 import os
 import tempfile
 from pathlib import Path
+from subprocess import DEVNULL
 
 import nbformat
 from nbclient import NotebookClient
@@ -22,7 +23,7 @@ def page() -> tuple[str, dict[str, bytes]]:
         os.environ["IPYTHONDIR"] = history
         try:
             resources = {"metadata": {"path": BOOK.parent}}
-            NotebookClient(book, timeout=SECONDS, resources=resources).execute()
+            NotebookClient(book, timeout=SECONDS, resources=resources).execute(stderr=DEVNULL)
         finally:
             os.environ.pop("IPYTHONDIR")
             if before is not None:

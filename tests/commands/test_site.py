@@ -81,7 +81,7 @@ def test_each_option_of_each_command_is_told():
         page = commands.page(name)
         parser = commands.parser_of(name)
         for action in parser._actions:
-            if action.help != argparse.SUPPRESS:
+            if action.help != argparse.SUPPRESS and action.dest != "help":
                 for option in action.option_strings:
                     assert re.search(rf"^`[^`]*{option}\b", page, re.M), (name, option)
                     told += 1
