@@ -8,7 +8,6 @@ import re
 from topomap.cli.arguments import Parser
 from topomap.cli.subcommands import SUBCOMMANDS
 
-EXITS = "\n\nexit status:"
 Sub = argparse._SubParsersAction
 
 
@@ -42,10 +41,10 @@ def parser_of(name: str) -> argparse.ArgumentParser:
 def page(name: str) -> str:
     """The page of a command."""
     parser = parser_of(name)
-    example, _, _ = (parser.epilog or "").partition(EXITS)
     return (
         f"# topomap {name}\n\n{_prose(parser.description or '')}\n\n"
-        f"{_usage(parser)}{_example(example)}{_arguments(parser, [], 2)}{_kinds(parser)}"
+        f"{_usage(parser)}{_example(parser)}{_arguments(parser, [], 2)}{_kinds(parser)}"
+        f"{_more(parser)}"
         "\n## Exit status\n\n[What the exit statuses mean](../exit-statuses.md) is the same for "
         "all commands.\n"
     )
@@ -65,7 +64,7 @@ def _kinds(parser: argparse.ArgumentParser) -> str:
     text = f"\n## In each environment\n{_arguments(first, [], 3, only=common)}"
     for sub, kind in subs.items():
         text += f"\n## {parser.prog} {kind}\n\n{_prose(sub.description or '')}.\n\n{_usage(sub)}"
-        text += f"{_example(sub.epilog or '')}{_arguments(sub, common, 3)}"
+        text += f"{_example(sub)}{_arguments(sub, common, 3)}"
     return text
 
 
@@ -106,10 +105,28 @@ def _usage(parser: argparse.ArgumentParser) -> str:
     return f"```text\n{usage}\n```\n"
 
 
-def _example(text: str) -> str:
-    _, _, lines = text.partition("example:\n")
-    calls = [re.sub(r"^  ", "", line) for line in lines.rstrip().splitlines()]
+def _told(parser: argparse.ArgumentParser) -> dict[str, str]:
+    """What stands below the arguments in the help: the paragraphs, by their first word."""
+    found = [part for part in (parser.epilog or "").split("\n\n") if part.strip()]
+    return {re.split(r"\W", part, maxsplit=1)[0]: part for part in found}
+
+
+def examples(parser: argparse.ArgumentParser) -> list[str]:
+    """The calls that the help of a command has as examples, each as one for the shell."""
+    _, _, lines = _told(parser).get("example", "").partition("\n")
+    calls = [re.sub(r"^  ", "", line) for line in lines.splitlines()]
+    return re.sub(r"\\\n *", "", "\n".join(calls)).splitlines()
+
+
+def _example(parser: argparse.ArgumentParser) -> str:
+    calls = examples(parser)
     return "\n```sh\n" + "\n".join(calls) + "\n```\n" if calls else ""
+
+
+def _more(parser: argparse.ArgumentParser) -> str:
+    """What else stands there, such as which statements there are."""
+    told = [part for word, part in _told(parser).items() if word not in ("example", "exit")]
+    return "\n## More\n" + "".join(f"\n```text\n{part}\n```\n" for part in told) if told else ""
 
 
 def _prose(text: str) -> str:

@@ -11,6 +11,7 @@ from website import api, commands, encodings, notebook, theory
 from website.links import ELSEWHERE, ROOT, for_site, place, targets
 
 ORIGINS: dict[str, str] = {}  # pages of the site that are files of the repository
+TITLES = {"Exit statuses": "Exit statuses", "The facts": "Instances"}  # of sections as pages
 FIRST = "docs/first-questions.md"  # what newcomers look for, so the search gives it first
 LANGUAGES = {".lp": "prolog", ".py": "python", ".cff": "yaml", ".toml": "toml"}
 
@@ -118,18 +119,22 @@ def _pages() -> dict[str, str]:
         **encodings.pages(),
         **theory.pages(),
         **api.pages(),
-        "reference/exit-statuses.md": _exit_statuses(),
+        "reference/exit-statuses.md": _section("formats", "Exit statuses"),
+        "reference/instances.md": _section("writing-instances", "The facts"),
     }
 
 
-def _exit_statuses() -> str:
-    """The section of the page about formats that tells them."""
-    page = (ROOT / "docs/formats.md").read_text(encoding="utf-8")
-    found = re.search(r"^## Exit statuses\n(.*?)(?=^## )", page, re.M | re.S)
+def _section(page: str, heading: str) -> str:
+    """A section of a page, as a page of the reference that links to it."""
+    text = (ROOT / f"docs/{page}.md").read_text(encoding="utf-8")
+    found = re.search(rf"^## {heading}\n(.*?)(?=^## )", text, re.M | re.S)
     if not found:
-        raise ValueError("docs/formats.md: no section Exit statuses")
-    example = "[Commands](../commands.md#limits-and-exit-statuses) has an example."
-    return f"# Exit statuses\n{found[1]}\n{example}\n"
+        raise ValueError(f"docs/{page}.md: no section {heading!r}")
+    anchor = heading.lower().replace(" ", "-")
+    moved = for_site(found[1], f"docs/{page}.md", "reference/section.md")
+    whole = text.partition("\n")[0].removeprefix("# ")
+    source = f"This is a section of [{whole}](../{page}.md#{anchor})."
+    return f"# {TITLES[heading]}\n{moved}\n{source}\n"
 
 
 def _source(path: str) -> str:
