@@ -180,6 +180,7 @@ def places(schema, path=()):
             yield from places(value, (*path, number))
 
 
+@pytest.mark.long
 def test_each_key_of_the_schema_is_written(answers):
     """Without it, some answer would not fit."""
     texts = [(name, answer, json.dumps(answer)) for name, answer in answers]
@@ -209,6 +210,7 @@ def inside(value, path=()):
             yield from inside(item, (*path, key))
 
 
+@pytest.mark.long
 def test_what_no_command_writes_does_not_fit(answers):
     """A value of another type, a key that is missing and one that is unknown are faults."""
     tried = 0
