@@ -111,7 +111,7 @@ figures: $(SETUP)
 	$(BIN)/topomap figures --directory docs/figures
 	$(BIN)/python scripts/website/gallery.py
 
-# The variable turns off an advertisement for another program. (With --quiet nothing is strict.)
+# The variable turns off a notice on the future of mkdocs. (With --quiet nothing would be strict.)
 docs: $(TOOLS)
 	NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --strict
 	@echo 'build/site is made; to read and search it: $(BIN)/python -m http.server -d build/site'
