@@ -7,7 +7,8 @@
 #                 follow, questions, the start, solve and long logs take,
 #                 docs/{online,asking,start,solve,logs}.md (two hours;
 #                 BENCH: options, such as BENCH='--only 8x8', BENCH=--quick, BENCH=--help)
-# make figures    draw the pictures of the pages again, docs/figures/
+# make docs       build the site of the pages, build/site (a minute)
+# make figures    draw the pictures of the pages again, docs/figures/ and docs/gallery/
 # make reasons    count the reasons of explain where there is no map, in docs/questions.md (minutes)
 # make knowledge  count what a compass and odometry leave, docs/knowledge.md and its picture (an hour)
 # make simulate   let robots explore 21 worlds, docs/simulations.json (seconds)
@@ -32,7 +33,7 @@ MAKERS  := $(wildcard scripts/topomap/worlds/*.py scripts/topomap/worlds/readers
              experience.py topology.py)
 PIP     := $(BIN)/python -m pip --quiet --disable-pip-version-check
 
-.PHONY: all table instances batch test test-long mutate lint figures bench beyond circumscription simulate \
+.PHONY: all table instances batch test test-long mutate lint docs figures bench beyond circumscription simulate \
         atlas knowledge reasons man clean \
         committed anew
 .DELETE_ON_ERROR:
@@ -117,6 +118,12 @@ bench: $(TOOLS)
 
 figures: $(SETUP)
 	$(BIN)/topomap figures --directory docs/figures
+	$(BIN)/python scripts/website/gallery.py
+
+# The variable turns off a notice on the future of mkdocs. (With --quiet nothing would be strict.)
+docs: $(TOOLS)
+	NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --strict
+	@echo 'build/site is made; to read and search it: $(BIN)/python -m http.server -d build/site'
 
 circumscription: $(TOOLS)
 	PYTHONPATH=tests $(BIN)/python -m bench.circumscription

@@ -219,6 +219,31 @@ def lacking(tool, why):
     pytest.skip(why)
 
 
+@pytest.fixture(scope="module")
+def browser(tmp_path_factory):
+    """Chromium, without a window."""
+    program, driver = shutil.which("chromium"), shutil.which("chromedriver")
+    if not (program and driver):
+        lacking("BROWSER", "no chromium and chromedriver")
+    try:
+        from selenium import webdriver
+    except ImportError:
+        lacking("BROWSER", "no selenium")
+    options = webdriver.ChromeOptions()
+    options.binary_location = program
+    for option in (
+        *("headless", "no-sandbox", "disable-gpu", "disable-quic", "no-first-run"),
+        *("disable-background-networking", "disable-component-update", "disable-sync"),
+        "disable-dev-shm-usage",
+        f"user-data-dir={tmp_path_factory.mktemp('browser')}",
+    ):
+        options.add_argument(f"--{option}")
+    options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})
+    driver = webdriver.Chrome(options, webdriver.ChromeService(driver))
+    yield driver
+    driver.quit()
+
+
 @pytest.fixture
 def topomap():
     """The command ``topomap``, run from the repository's folder."""

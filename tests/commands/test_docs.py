@@ -14,8 +14,10 @@ from topomap.paper import figure4
 DOCS = ROOT / "docs"
 README = ROOT / "README.md"
 INDEX = DOCS / "README.md"
+GALLERY = DOCS / "gallery.md"
 PAGES = [README, *sorted(DOCS.glob("**/*.md"))]
 FENCE = re.compile(r"^```(\w*)(?: (\S+))?\n(.*?)^```", re.M | re.S)
+SHOWN = "asp", "text", "python"  # languages of blocks that show a file, if they name one
 MOST_LINES = 160  # of the README
 # What tests leave to the reader, in blocks of sh: it makes environments, or takes long.
 SETUP = re.compile(r"make\b|(python3? -m )?pip install |git clone |cd |export |python3 -m venv ")
@@ -58,10 +60,11 @@ def cases():
 @pytest.mark.parametrize(("page", "commands"), [*cases()])
 def test_commands_print_what_the_page_says(tmp_path, page, commands):
     """Those of a block in one folder, one after the other; ``...`` stands for any text. The
-    folder has the files that the page shows."""
+    folder has the files that the page shows, or a page to which it links. The pictures of the
+    gallery are those that its commands draw."""
     for folder in ("encodings", "instances"):
         Path(tmp_path / folder).symlink_to(ROOT / folder)
-    for file, text in blocks(page, "asp", "text"):
+    for file, text in [*shown_beside(page), *blocks(page, *SHOWN)]:
         if file:
             (tmp_path / file).write_text(text)
     assert commands
@@ -77,6 +80,36 @@ def test_commands_print_what_the_page_says(tmp_path, page, commands):
         pattern = ".*".join(re.escape(text.strip("\n")) for text in expected.split("..."))
         printed = done.stdout.strip("\n")
         assert re.fullmatch(pattern, printed, re.DOTALL), (command, printed, done.stderr)
+    if page == GALLERY:
+        (picture,) = tmp_path.glob("*.svg")
+        drawn, committed = (folder / picture.name for folder in (tmp_path, DOCS / "gallery"))
+        assert parts_of(drawn) == parts_of(committed)
+
+
+def shown_beside(page):
+    """The files that the pages show to which a page links."""
+    linked = {path for path, _ in links(page) if path.suffix == ".md" and path.parent == DOCS}
+    return [shown for one in sorted(linked) if one.exists() for shown in blocks(one, *SHOWN)]
+
+
+def parts_of(picture):
+    """The texts and the named parts of a picture, such as its links and faces."""
+    svg = picture.read_text()
+    found = re.findall(r"<text [^>]*>([^<]*)</text>", svg), re.findall(r'<g id="([\w.-]+)"', svg)
+    assert all(found)
+    return found
+
+
+def test_the_gallery_has_twenty_pictures():
+    """Each is on the page, below the command that draws it, and no other one is committed."""
+    text = GALLERY.read_text()
+    named = re.findall(r"^!\[[^\]]+\]\(gallery/([\w-]+\.svg)\)$", text, re.M)
+    drawn = re.findall(
+        r" -o ([\w-]+\.svg)\b", "".join(block for _, block in blocks(GALLERY, "console"))
+    )
+    assert named == drawn
+    assert len(set(named)) == len(named) == 20
+    assert {path.name for path in (DOCS / "gallery").iterdir()} == set(named)
 
 
 def test_what_the_pages_run():
@@ -91,7 +124,7 @@ def test_what_the_pages_run():
 def test_the_files_that_pages_show_are_used():
     for page in PAGES:
         commands = "".join(block for _, block in blocks(page, "console"))
-        for file, _ in blocks(page, "asp", "text"):
+        for file, _ in blocks(page, *SHOWN):
             assert not file or file in commands, f"{name(page)}: {file}"
 
 
@@ -144,7 +177,10 @@ def test_the_page_for_newcomers_names_what_is_there():
     page = (DOCS / "DEVELOPMENT.md").read_text()
     package = ROOT / "scripts/topomap"
     rooms = [path.parent for path in package.glob("*/__init__.py")]
-    near = [ROOT / name for name in ("", "tests", "tests/oracles", "encodings", "instances")]
+    near = [
+        ROOT / name
+        for name in ("", "tests", "tests/oracles", "encodings", "instances", "scripts/website")
+    ]
     named = set(re.findall(r"`([\w./-]+(?:/|\.(?:py|lp|toml|json|txt)))`", page))
     assert len(named) > 50
     for file in named:

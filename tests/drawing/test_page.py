@@ -7,7 +7,6 @@ import math
 import os
 import random
 import re
-import shutil
 import signal
 import subprocess
 import time
@@ -17,7 +16,7 @@ from html.parser import HTMLParser
 from itertools import combinations, product
 
 import pytest
-from conftest import BIN, ROOT, answers, lacking, plain, run
+from conftest import BIN, ROOT, answers, plain, run
 from matplotlib.path import Path as Outline
 from oracles import brute_force as oracle
 from oracles.worlds import WORLDS, informed, random_experience
@@ -711,31 +710,6 @@ def test_colours_contrast(scheme):
 
 
 # In a browser.
-
-
-@pytest.fixture(scope="module")
-def browser(tmp_path_factory):
-    """Chromium, without a window."""
-    program, driver = shutil.which("chromium"), shutil.which("chromedriver")
-    if not (program and driver):
-        lacking("BROWSER", "no chromium and chromedriver")
-    try:
-        from selenium import webdriver
-    except ImportError:
-        lacking("BROWSER", "no selenium")
-    options = webdriver.ChromeOptions()
-    options.binary_location = program
-    for option in (
-        *("headless", "no-sandbox", "disable-gpu", "disable-quic", "no-first-run"),
-        *("disable-background-networking", "disable-component-update", "disable-sync"),
-        "disable-dev-shm-usage",
-        f"user-data-dir={tmp_path_factory.mktemp('browser')}",
-    ):
-        options.add_argument(f"--{option}")
-    options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})
-    driver = webdriver.Chrome(options, webdriver.ChromeService(driver))
-    yield driver
-    driver.quit()
 
 
 @pytest.fixture

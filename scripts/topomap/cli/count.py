@@ -29,7 +29,7 @@ def add(group: Any) -> None:
   topomap count instances/grid-4x4-snake.lp --planar --bound 16
   topomap count instances/grid-4x4-snake.lp --jobs 2
   topomap count instances/grid-3x4-paper.lp --circumscribe
-  topomap generate grid 4 5 | topomap count - --merging""",
+  topomap generate grid 4 5 --route snake | topomap count - --merging""",
     )
     add_instance(made)
     add_known(made)
