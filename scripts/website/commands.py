@@ -52,7 +52,8 @@ def page(name: str) -> str:
 
 def _kinds(parser: argparse.ArgumentParser) -> str:
     """The sections of what a command has of its own kinds, such as ``generate grid``: first the
-    arguments that all kinds have, then those of each."""
+    arguments that all kinds have, then those of each.
+    """
     kinds = [action for action in parser._actions if isinstance(action, Sub)]
     if not kinds:
         return ""

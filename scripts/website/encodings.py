@@ -37,7 +37,8 @@ SECTION = re.compile(r"^(Input|Output|Letters|Source)\b")
 @dataclass
 class Head:
     """The head of an encoding: what it is for, in paragraphs, and the sections Input, Output and so
-    on, each as it is laid out."""
+    on, each as it is laid out.
+    """
 
     name: str
     purpose: str

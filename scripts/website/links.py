@@ -51,7 +51,8 @@ def targets(text: str, origin: str) -> Iterator[str]:
 
 def for_site(text: str, origin: str, page: str) -> str:
     """The text of a page that lies at ``origin`` in the repository and at ``page`` in the site,
-    with links as the site has them, and with titles on blocks that show a file."""
+    with links as the site has them, and with titles on blocks that show a file.
+    """
 
     def moved(link: str) -> str:
         path, anchor = _resolved(link, origin)
@@ -103,7 +104,8 @@ def _titled(block: str) -> str:
 
 def _resolved(link: str, origin: str) -> tuple[str, str]:
     """The file of the repository to which a link leads, and the heading; no file if it leads out,
-    or to a heading of the page itself."""
+    or to a heading of the page itself.
+    """
     path, _, anchor = link.partition("#")
     if not path or re.match(r"\w+:", path):
         return "", anchor

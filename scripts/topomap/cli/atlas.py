@@ -103,7 +103,8 @@ def run(args: argparse.Namespace) -> int:
 
 def _worlds(file: str) -> "Iterator[World]":
     """The worlds of a file, and where the agent stands first. Raises InputError naming the line
-    that names none."""
+    that names none.
+    """
     from topomap.questions.robot import start_of
     from topomap.worlds.family import expand
 

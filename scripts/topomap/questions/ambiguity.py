@@ -1,5 +1,6 @@
 """How ambiguous a walk in a known world is: how many maps live after each of its steps, which walk
-leaves one of them, and whether the real one is preferred."""
+leaves one of them, and whether the real one is preferred.
+"""
 
 import contextlib
 from collections.abc import Iterator, Sequence
@@ -33,7 +34,8 @@ MOST_WORK = 20_000_000  # moves of maps, in the search for a walk that leaves on
 @contextlib.contextmanager
 def within(watch: Watch, seconds: float) -> Iterator[Attempt]:
     """A part of the work that may take so many seconds; its ``fault`` says why it was cut. What
-    ends the whole work is passed on."""
+    ends the whole work is passed on.
+    """
     attempt = Attempt()
     with watch.deadline.earlier(seconds), attempt:
         yield attempt
@@ -136,7 +138,8 @@ def counted(
     experience: Experience, planar: bool, most: int, seconds: float, watch: Watch
 ) -> Counted:
     """Count the maps after each step, breadth-first, until they are more than ``most``, or the time
-    for it is over."""
+    for it is over.
+    """
     first, *steps = steps_of(experience)
     told = Told(experience.slots, first, experience.drift, experience.stretch, experience.tolerance)
     tree = Tree(told, planar)
@@ -175,7 +178,8 @@ def one_since(numbers: Sequence[int]) -> int | None:
 
 def unfolding(experience: Experience) -> tuple[DState, ...]:
     """The map in which each step along a new way came to a new place: what no walk refutes, as
-    long as each further step along a new way comes to a new place, too."""
+    long as each further step along a new way comes to a new place, too.
+    """
     slots = experience.slots
     links: dict[Gateway, Gateway] = {}
     at = [(0, 0)]
@@ -284,7 +288,8 @@ def _at(one: Living, slots: int) -> tuple[DState, ...]:
 class Preferred:
     """What minimality prefers at the end of a walk: of what ``kind`` the best maps are, how many
     there are (``more``: or more than that), what each costs, and whether the ``truth`` is among
-    them; and what the truth costs. What is open is None, and ``why`` says so."""
+    them; and what the truth costs. What is open is None, and ``why`` says so.
+    """
 
     kind: str | None
     maps: int | None

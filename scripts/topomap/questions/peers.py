@@ -31,7 +31,8 @@ class Learned:
     """What a learner came to: how many ``inputs`` it gave, of which so many were ``moves`` along a
     way, and so many tested a hypothesis that was believed or refuted; how many ``states`` it
     learned; of how many there are in truth, and in the smallest automaton that is ``right``; and
-    whether what it learned is. If it did not end, ``why``, and what it learned is None."""
+    whether what it learned is. If it did not end, ``why``, and what it learned is None.
+    """
 
     inputs: int
     moves: int
@@ -91,7 +92,8 @@ def learned(
 
     class Tests(RandomhWOracle):  # type: ignore[misc]
         """AALpy's tests of a hypothesis. The first one has one state; where its test finds nothing
-        against it, AALpy 2.0 ends with an error of its own, and so it is ended before that."""
+        against it, AALpy 2.0 ends with an error of its own, and so it is ended before that.
+        """
 
         begun = False
 
@@ -141,7 +143,8 @@ def _right(
     world: TopologicalMap, looks: dict[Gateway, Hashable], dstate: Gateway, automaton: Any
 ) -> bool:
     """Whether an automaton, from the state in which it is, predicts all that is seen in the world
-    from a dstate on."""
+    from a dstate on.
+    """
     met = {(dstate, automaton.current_state)}
     waiting = [*met]
     for (place, slot), state in waiting:

@@ -57,7 +57,8 @@ class Lineage:
 class Refuted:
     """What can be refuted of maps: how many of them no walk ``never`` refutes; if there are none,
     a ``walk``, as turns, that refutes all of them, and ``at_least`` how many steps each such walk
-    has. It is a shortest one if it has no more."""
+    has. It is a shortest one if it has no more.
+    """
 
     never: int
     walk: tuple[int, ...] | None = None
@@ -71,7 +72,8 @@ class Refuted:
 
 def refute(real: Standing, others: Iterable[Standing], work: Work) -> Refuted:
     """The shortest walk in the real world that refutes all of these maps, which live so far; if it
-    takes more work than it may to find it, some walk that does."""
+    takes more work than it may to find it, some walk that does.
+    """
     world, lineages = Lineage(real), [Lineage(other) for other in others]
     never, farthest = 0, 0
     for lineage in lineages:
@@ -95,7 +97,8 @@ def difference(
 ) -> tuple[int, ...] | None:
     """The shortest walk that refutes one map, where the agent is ``there`` in it, and ``here`` in
     the world; None if no walk does. (To go through a pending gateway, and back, refutes nothing
-    that is not refuted without that.)"""
+    that is not refuted without that.)
+    """
     level: list[tuple[State, State, tuple[int, ...]]] = [(here, there, ())]
     met = {(here, there)}
     while level:
@@ -136,7 +139,8 @@ def _alive(
     turn: int,
 ) -> tuple[tuple[int, State], ...]:
     """The maps, by number, that a step to this dstate of the world leaves, and where it leads in
-    each."""
+    each.
+    """
     seen = real.look(end)
     ends = ((number, others[number].after(state, turn)) for number, state in states)
     return tuple(
