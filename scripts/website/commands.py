@@ -51,8 +51,9 @@ def page(name: str) -> str:
 
 
 def _kinds(parser: argparse.ArgumentParser) -> str:
-    """The sections of what a command has of its own kinds, such as ``generate grid``: first the
-    arguments that all kinds have, then those of each.
+    """Make the sections of the kinds that a command has, such as ``generate grid``.
+
+    First come the arguments that all kinds have, then those of each kind.
     """
     kinds = [action for action in parser._actions if isinstance(action, Sub)]
     if not kinds:

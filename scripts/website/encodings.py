@@ -36,8 +36,10 @@ SECTION = re.compile(r"^(Input|Output|Letters|Source)\b")
 
 @dataclass
 class Head:
-    """The head of an encoding: what it is for, in paragraphs, and the sections Input, Output and so
-    on, each as it is laid out.
+    """The head of an encoding.
+
+    It says in paragraphs what the encoding is for, and has the sections Input, Output and so on,
+    each as it is laid out.
     """
 
     name: str

@@ -50,8 +50,10 @@ def targets(text: str, origin: str) -> Iterator[str]:
 
 
 def for_site(text: str, origin: str, page: str) -> str:
-    """The text of a page that lies at ``origin`` in the repository and at ``page`` in the site,
-    with links as the site has them, and with titles on blocks that show a file.
+    """Make the text of a page of the site from that of a page of the repository.
+
+    It lies at ``origin`` in the repository and at ``page`` in the site. Its links are made those of
+    the site, and blocks that show a file get a title.
     """
 
     def moved(link: str) -> str:
@@ -103,8 +105,9 @@ def _titled(block: str) -> str:
 
 
 def _resolved(link: str, origin: str) -> tuple[str, str]:
-    """The file of the repository to which a link leads, and the heading; no file if it leads out,
-    or to a heading of the page itself.
+    """Find the file of the repository to which a link leads, and the heading there.
+
+    There is no file if the link leads out of the repository, or to a heading of the page itself.
     """
     path, _, anchor = link.partition("#")
     if not path or re.match(r"\w+:", path):

@@ -64,8 +64,9 @@ def pages() -> dict[str, str]:
 
 
 def pairs(source: str) -> Iterator[tuple[str, str]]:
-    """The rules of a file after its head, each run of them with the comment above it. The comment
-    is empty if there is none.
+    """Give the rules of a file after its head, each group of them with the comment above it.
+
+    The comment is empty if there is none.
     """
     body = re.sub(r"\A(?:%.*\n)+", "", source)
     said: list[str] = []

@@ -140,6 +140,8 @@ def test_the_graph_is_what_export_writes(topomap, tmp_path):
         done = topomap("export", maps, "--map", nth, "--format", "json", "-o", file)
         assert done.returncode == 0
         written = nx.node_link_graph(json.loads(file.read_text()), edges="edges")
+        for _, attributes in written.nodes(data=True):  # where a drawing has the place
+            assert {*map(type, (attributes.pop("x"), attributes.pop("y")))} == {float}
         ours = one.to_networkx()
         assert plain(dict(ours.graph)) == written.graph
         assert plain(list(ours.nodes(data=True))) == plain(list(written.nodes(data=True)))

@@ -32,9 +32,11 @@ class Atlas(Reply):
         self._data = data
 
     def document(self) -> dict[str, Any]:
+        """The atlas as JSON."""
         return self._data
 
     def lines(self) -> Iterator[str]:
+        """The atlas as the lines of a page."""
         return page({**self._data, "fault": self.fault})
 
 
@@ -47,15 +49,18 @@ def atlas_under(
     seed: int,
     learner: bool,
 ) -> Atlas:
-    """Count the maps of a tour and of a random walk in each of some worlds, under the watch of a
-    command. What was found is kept when the time is over, but for the world that was begun.
+    """Count the maps of a tour and of a random walk in each of some worlds.
+
+    This runs under the watch of a command. What was found is kept when the time is over, except for
+    the world that was begun.
 
     Parameters:
-        worlds: each with its call, its name, and where the walks begin.
-        most: of more maps than that it is only told that they are more.
-        seconds: that each part of the work may take.
-        steps: the most steps of the random walk, and ``seed`` its seed.
-        learner: whether to let AALpy learn them, if it is installed.
+        worlds: The worlds, each with its call, its name, and where the walks begin.
+        most: The largest number of maps that is counted. If there are more, only that is said.
+        seconds: The number of seconds that each part of the work may take.
+        steps: The largest number of steps of the random walk.
+        seed: The seed of the random walk.
+        learner: Whether AALpy is to learn the worlds, if it is installed.
     """
     worlds = [*worlds]
     version = peers.peer() if learner else None

@@ -102,8 +102,10 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _worlds(file: str) -> "Iterator[World]":
-    """The worlds of a file, and where the agent stands first. Raises InputError naming the line
-    that names none.
+    """Read the worlds of a file, and where the agent stands first.
+
+    Raises:
+        InputError: A line does not name a world. The message names the line.
     """
     from topomap.questions.robot import start_of
     from topomap.worlds.family import expand

@@ -1,4 +1,6 @@
-"""How ambiguous a walk in a known world is: how many maps live after each of its steps, which walk
+"""How ambiguous a walk in a known world is.
+
+It is counted how many maps live after each step of the walk. Then it is asked which further walk
 leaves one of them, and whether the real one is preferred.
 """
 
@@ -33,8 +35,9 @@ MOST_WORK = 20_000_000  # moves of maps, in the search for a walk that leaves on
 
 @contextlib.contextmanager
 def within(watch: Watch, seconds: float) -> Iterator[Attempt]:
-    """A part of the work that may take so many seconds; its ``fault`` says why it was cut. What
-    ends the whole work is passed on.
+    """Limit a part of the work to a number of seconds.
+
+    Its ``fault`` says why it was cut. What ends the whole work is passed on.
     """
     attempt = Attempt()
     with watch.deadline.earlier(seconds), attempt:
@@ -91,9 +94,11 @@ def until_all(world: TopologicalMap, start: Place, seed: int, most: int) -> list
 
 @dataclass(frozen=True)
 class Counted:
-    """How many maps live after each step from 0, and how many of them are closed, as far as they
-    were counted; if not to the end, ``why``: "maps", after the next step there are more than
-    ``most``, or what cut the work. ``level`` has the maps after the last step that was counted.
+    """How many maps live after each step from 0, and how many of them are closed.
+
+    If they were not counted to the end, ``why`` says why: "maps" means that after the next step
+    there are more than ``most``; else it is what cut the work. ``level`` has the maps after the
+    last step that was counted.
     """
 
     maps: tuple[int, ...]
@@ -137,8 +142,9 @@ def steps_of(experience: Experience) -> Iterator[Step]:
 def counted(
     experience: Experience, planar: bool, most: int, seconds: float, watch: Watch
 ) -> Counted:
-    """Count the maps after each step, breadth-first, until they are more than ``most``, or the time
-    for it is over.
+    """Count the maps after each step, breadth-first.
+
+    It ends when there are more than ``most``, or when the time for it is over.
     """
     first, *steps = steps_of(experience)
     told = Told(experience.slots, first, experience.drift, experience.stretch, experience.tolerance)
@@ -177,8 +183,9 @@ def one_since(numbers: Sequence[int]) -> int | None:
 
 
 def unfolding(experience: Experience) -> tuple[DState, ...]:
-    """The map in which each step along a new way came to a new place: what no walk refutes, as
-    long as each further step along a new way comes to a new place, too.
+    """Make the map in which each step along a new way came to a new place.
+
+    No walk refutes it, as long as each further step along a new way comes to a new place, too.
     """
     slots = experience.slots
     links: dict[Gateway, Gateway] = {}
@@ -286,9 +293,11 @@ def _at(one: Living, slots: int) -> tuple[DState, ...]:
 
 @dataclass(frozen=True)
 class Preferred:
-    """What minimality prefers at the end of a walk: of what ``kind`` the best maps are, how many
-    there are (``more``: or more than that), what each costs, and whether the ``truth`` is among
-    them; and what the truth costs. What is open is None, and ``why`` says so.
+    """What minimality prefers at the end of a walk.
+
+    It has the ``kind`` of the best maps, their number (with ``more``, there may be others), what
+    each costs, whether the ``truth`` is among them, and what the truth costs. What is open is None,
+    and ``why`` gives the reason.
     """
 
     kind: str | None

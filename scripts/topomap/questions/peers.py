@@ -28,10 +28,13 @@ INPUTS, ALIKE = "inputs", "all alike"  # why a learner is ended, but for lack of
 
 @dataclass(frozen=True)
 class Learned:
-    """What a learner came to: how many ``inputs`` it gave, of which so many were ``moves`` along a
-    way, and so many tested a hypothesis that was believed or refuted; how many ``states`` it
-    learned; of how many there are in truth, and in the smallest automaton that is ``right``; and
-    whether what it learned is. If it did not end, ``why``, and what it learned is None.
+    """What a learner of automata came to.
+
+    It gave so many ``inputs``, of which so many were ``moves`` along a way, and so many tested a
+    hypothesis, which was then kept or refuted. It learned so many ``states``; the world has so many
+    dstates, and the smallest automaton that predicts it has so many states. ``right`` is whether
+    what was learned predicts the world. If the learner did not end, ``why`` gives the reason, and
+    what it learned is None.
     """
 
     inputs: int
@@ -91,8 +94,10 @@ def learned(
             return looks[end]
 
     class Tests(RandomhWOracle):  # type: ignore[misc]
-        """AALpy's tests of a hypothesis. The first one has one state; where its test finds nothing
-        against it, AALpy 2.0 ends with an error of its own, and so it is ended before that.
+        """AALpy's tests of a hypothesis.
+
+        The first hypothesis has one state. Where its test finds nothing against it, AALpy 2.0 ends
+        with an error of its own, and so the work is ended before that.
         """
 
         begun = False
@@ -142,8 +147,9 @@ def _drawn(seed: int) -> Iterator[None]:
 def _right(
     world: TopologicalMap, looks: dict[Gateway, Hashable], dstate: Gateway, automaton: Any
 ) -> bool:
-    """Whether an automaton, from the state in which it is, predicts all that is seen in the world
-    from a dstate on.
+    """Tell whether an automaton predicts all that is seen in the world from a dstate on.
+
+    It does so from the state in which it is.
     """
     met = {(dstate, automaton.current_state)}
     waiting = [*met]

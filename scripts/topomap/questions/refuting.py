@@ -1,5 +1,4 @@
-"""Which further walk in a known world leaves the real map alone of those that live; or that none
-does.
+"""Which further walk in a known world leaves only the real map of those that live, if any does.
 
 A further walk refutes a map if the map predicts something else than what is seen. Beyond a pending
 gateway a map predicts nothing, but what comes of it there is not free: whoever goes back the way by
@@ -55,9 +54,11 @@ class Lineage:
 
 @dataclass(frozen=True)
 class Refuted:
-    """What can be refuted of maps: how many of them no walk ``never`` refutes; if there are none,
-    a ``walk``, as turns, that refutes all of them, and ``at_least`` how many steps each such walk
-    has. It is a shortest one if it has no more.
+    """Which of some maps can be refuted.
+
+    ``never`` is the number of those that no walk refutes. If it is 0, ``walk`` is a walk that
+    refutes all of them, as turns, and each such walk has ``at_least`` so many steps. The walk is a
+    shortest one if it has no more.
     """
 
     never: int
@@ -71,8 +72,9 @@ class Refuted:
 
 
 def refute(real: Standing, others: Iterable[Standing], work: Work) -> Refuted:
-    """The shortest walk in the real world that refutes all of these maps, which live so far; if it
-    takes more work than it may to find it, some walk that does.
+    """Find the shortest walk in the real world that refutes all of these maps, which live so far.
+
+    If it would take too much work to find it, some walk that refutes them is found.
     """
     world, lineages = Lineage(real), [Lineage(other) for other in others]
     never, farthest = 0, 0
@@ -95,9 +97,10 @@ def refute(real: Standing, others: Iterable[Standing], work: Work) -> Refuted:
 def difference(
     real: Lineage, here: State, other: Lineage, there: State, work: Work
 ) -> tuple[int, ...] | None:
-    """The shortest walk that refutes one map, where the agent is ``there`` in it, and ``here`` in
-    the world; None if no walk does. (To go through a pending gateway, and back, refutes nothing
-    that is not refuted without that.)
+    """Find the shortest walk that refutes one map; None if no walk does.
+
+    The agent is ``there`` in the map, and ``here`` in the world. To go through a pending gateway
+    and back refutes nothing that is not refuted without that.
     """
     level: list[tuple[State, State, tuple[int, ...]]] = [(here, there, ())]
     met = {(here, there)}
@@ -138,8 +141,9 @@ def _alive(
     states: Iterable[tuple[int, State]],
     turn: int,
 ) -> tuple[tuple[int, State], ...]:
-    """The maps, by number, that a step to this dstate of the world leaves, and where it leads in
-    each.
+    """Find the maps, by number, that a step to a dstate of the world leaves.
+
+    With each comes the state to which the step leads in it.
     """
     seen = real.look(end)
     ends = ((number, others[number].after(state, turn)) for number, state in states)
