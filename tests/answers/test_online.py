@@ -13,6 +13,7 @@ from topomap.model.experience import Step
 from topomap.model.facts import read
 from topomap.model.found import UNPROVED
 from topomap.model.query import Query
+from topomap.runtime.limits import MOST_COUNTED
 from topomap.runtime.watch import Watch
 from topomap.search import traversal
 from topomap.solver import online, solving
@@ -29,7 +30,7 @@ WAYS = pytest.mark.parametrize(
 )
 
 
-def begun(experience, planar=False, bound=None, most=online.MOST_COUNTED, **options):
+def begun(experience, planar=False, bound=None, most=MOST_COUNTED, **options):
     measured = experience.drift, experience.stretch, experience.tolerance
     first = told(experience, 0)
     axiom = options.pop("path_axiom", True)

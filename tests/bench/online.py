@@ -23,6 +23,7 @@ from topomap.model.query import Query
 from topomap.questions.follow import Following
 from topomap.questions.records import Record
 from topomap.runtime.files import output
+from topomap.runtime.limits import MOST_COUNTED
 from topomap.runtime.watch import Stopped, Watch
 from topomap.solver import online, programs, solving
 from topomap.solver.online import OnlineSolver
@@ -45,7 +46,7 @@ HEAD = f"""# A step of `topomap follow`
 
 Written by `python -m bench.online` in `tests/`. A step *online* is `OnlineSolver.step` and
 `OnlineSolver.status`: the children of each hypothesis, or what is new is ground, then the number of
-hypotheses (up to {online.MOST_COUNTED:,}; of
+hypotheses (up to {MOST_COUNTED:,}; of
 more it says so), the best maps, and what is certain. *From scratch* the experience up to that
 step is ground and counted, then ground again for the best maps, as `topomap count` and `solve
 --optimal` do; what is certain is not asked for. *Rules* are ground rules: those that the step
