@@ -312,7 +312,7 @@ REFUSED = [
     ("planar = 1", "planar: no number of a map"),
     ("planar()", "planar: it is said of the whole map, without more"),
     ("same", "same: it is said of step, step: same(...)"),
-    ("square", "square: no such word; there are same, linked,"),
+    ("square", "square: no such word; did you mean same?"),
     ("met(1,2)", "met: no such word; there are same, linked,"),
     ("", "not a statement, such as same(3,12)"),
     ("not", "not: no such word"),

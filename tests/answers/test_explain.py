@@ -416,7 +416,9 @@ def test_a_walk_of_thirteen_steps_without_a_map(tmp_path):
     names = [one["reason"] for one in answer["reasons"]]
     assert (status, answer["verdict"], answer["horizon"]) == (0, "no map", 13)
     assert (answer["minimal"], answer["gathered"], answer["fewest"]) == (True, True, True)
-    assert len(names) <= 8
+    # Eight would be enough if a path could not lead on by a gateway that was not seen; but where
+    # views are given up, it can.
+    assert len(names) <= 10
     assert wrong(seen, answer, None) in (None, "open")
     control = clingo.Control(["--opt-mode=ignore"])
     for file in ("topomap", "explain", *parts):

@@ -203,7 +203,7 @@ def test_bad_lines(inside, listed, tmp_path, text, fault):
         (["none.txt"], "none.txt: no such file or directory"),
         (["--from", "none.json"], "none.json: no such file or directory"),
         (["--from", "{list}"], "worlds.txt: no JSON"),
-        (["{list}", "-o", "{list}"], "it is to be read, and cannot be written, too"),
+        (["{list}", "-o", "{list}"], "it is an input, so it cannot be written"),
     ],
 )
 def test_bad_calls(inside, listed, call, fault):

@@ -211,12 +211,6 @@ def test_a_command_that_draws_plainly_says_so(topomap, tmp_path, call):
     assert [one.name for one in tmp_path.iterdir() if one.name.startswith(".")] == []
 
 
-def test_what_needs_no_drawing_is_not_partial(inside, tmp_path):
-    file = torus_file(tmp_path)
-    done = inside("export", file, "--timeout", "0.001", "--format", "json")
-    assert (done.returncode, done.stderr) == (0, "")
-
-
 def test_what_ends_a_drawing_leaves_the_file_as_it_was(tmp_path):
     def stopped():
         raise Stopped("interrupted")

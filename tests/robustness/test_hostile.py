@@ -188,10 +188,11 @@ def test_other_hostile_networks(tmp_path):
     file = tmp_path / "bad.graphml"
     for content, fault in (
         ("<graphml>" + "<graph>" * 200_000, "not a GraphML file"),
-        ("<a>" * 200_000 + "</a>" * 200_000, "not a GraphML file"),
+        ("<a>" * 200_000 + "</a>" * 200_000, "not in one of the formats"),
         (f"<graphml><graph>{NODES}</graph></graphml>", "place a has no coordinates"),
         (f"<graphml><graph>{NODES}</graph></graphml>".replace('"a"', '"&#10;"'), r"place \n has"),
-        ("\0" * 1000, "not a GraphML file"),
+        ("\0" * 1000, "not in one of the formats"),
+        ("<graphml>" + "\0" * 1000, "not a GraphML file"),
     ):
         file.write_text(content)
         line = refusal(tmp_path, "generate", "network", file, "--route", "tour")

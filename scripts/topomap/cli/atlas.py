@@ -60,7 +60,12 @@ def add(group: Any) -> None:
     )
     add("--seed", type=number(int, 0), metavar="N", help="seed for random walks (default: 0)")
     add("--no-peers", action="store_true", help="do not ask AALpy, also where it is installed")
-    add("--timeout", type=number(float, 0.001), metavar="S", help="stop after S seconds")
+    add(
+        "--timeout",
+        type=number(float, 0.001),
+        metavar="S",
+        help="stop after S seconds (default: no limit)",
+    )
     add("--json", action="store_true", help="write JSON")
     add("-o", "--output", metavar="FILE", help="file to write (default: stdout)")
 

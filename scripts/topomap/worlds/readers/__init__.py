@@ -12,7 +12,7 @@ from pathlib import Path
 from topomap.runtime.errors import InputError
 from topomap.runtime.files import read_bytes
 from topomap.worlds.plan import Plan, Reading
-from topomap.worlds.readers.common import with_names
+from topomap.worlds.readers.common import is_xml_with, with_names
 
 FORMATS = {
     "graphml": "GraphML",
@@ -47,5 +47,7 @@ def read(file: str | Path, reading: Reading) -> Plan:
         raise InputError(
             f"{file}: it is an image; for a floor plan, give the YAML file that names it"
         )
+    if is_xml_with(content, b"!doctype"):
+        raise InputError(f"{file}: it declares a document type or entities, which is refused")
     known = ", ".join(FORMATS.values())
     raise InputError(f"{file}: it is not in one of the formats that are known: {known}")

@@ -35,15 +35,12 @@ def json_of(content: bytes) -> Any:
         return InputError(" JSON with a number that is too long")
 
 
-def beginning(content: bytes) -> bytes:
-    """The first letters of a text file, in lower case, by which its format is recognised.
-
-    The file may be in UTF-16, as some XML is.
-    """
-    start = content[:4000]
-    if start[:2] in (b"\xff\xfe", b"\xfe\xff"):
-        start = start.decode("utf-16", "ignore").encode()
-    return start.removeprefix(b"\xef\xbb\xbf").lstrip().lower()
+def is_xml_with(content: bytes, name: bytes) -> bool:
+    """Tell whether a file is XML with an element of this name; XML may be written in UTF-16."""
+    if content[:2] in (b"\xff\xfe", b"\xfe\xff"):
+        content = content.decode("utf-16", "ignore").encode()
+    begins = content[:100].removeprefix(b"\xef\xbb\xbf").lstrip()
+    return begins[:1] == b"<" and b"<" + name in content.lower()
 
 
 def looks_like_json(content: bytes) -> bool:

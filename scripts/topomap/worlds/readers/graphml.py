@@ -27,7 +27,7 @@ from topomap.runtime.limits import LARGEST
 from topomap.worlds.courses import SHOWN, exit_towards, point_along, shares
 from topomap.worlds.plan import Plan, Point, Reading, Way
 from topomap.worlds.readers import exact
-from topomap.worlds.readers.common import beginning
+from topomap.worlds.readers.common import is_xml_with
 
 Data = Mapping[str, Any]  # what is told of an edge
 DEGREE = 111_195  # metres of a degree of latitude, for an earth radius of 6,371 km
@@ -44,8 +44,7 @@ NO, YES = {"false", "0", "no"}, {"true", "1", "yes"}  # the values of the attrib
 
 def fits(name: str, content: bytes) -> bool:
     """Tell whether a file is GraphML."""
-    begins = beginning(content)
-    return begins[:1] == b"<" and b"graphml" in begins
+    return is_xml_with(content, b"graphml")
 
 
 def read(file: str, content: bytes, reading: Reading) -> Plan:

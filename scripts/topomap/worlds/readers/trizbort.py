@@ -19,7 +19,14 @@ from defusedxml.ElementTree import fromstring
 from topomap.model.topology import Place
 from topomap.runtime.errors import InputError
 from topomap.worlds.plan import Exit, Plan, Point, Reading, Way
-from topomap.worlds.readers.common import beginning, demand_few, name_of, number_of, numbered, shown
+from topomap.worlds.readers.common import (
+    demand_few,
+    is_xml_with,
+    name_of,
+    number_of,
+    numbered,
+    shown,
+)
 
 PORTS = [
     "n",
@@ -45,8 +52,7 @@ NAMED = 10  # the largest number of lines in a warning
 
 def fits(name: str, content: bytes) -> bool:
     """Tell whether a file is a map of Trizbort."""
-    begin = beginning(content)
-    return begin[:1] == b"<" and b"<trizbort" in begin
+    return is_xml_with(content, b"trizbort")
 
 
 def read(file: str, content: bytes, reading: Reading) -> Plan:
