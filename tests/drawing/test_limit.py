@@ -211,6 +211,16 @@ def test_a_command_that_draws_plainly_says_so(topomap, tmp_path, call):
     assert [one.name for one in tmp_path.iterdir() if one.name.startswith(".")] == []
 
 
+@pytest.mark.parametrize("form", ["json", "graphml", "tmap2"])
+def test_positions_of_a_plain_drawing_are_said_to_be_plain(inside, tmp_path, form):
+    """These forms have positions too, which take a drawing."""
+    file = torus_file(tmp_path)
+    done = inside("export", file, "--timeout", "0.001", "--format", form)
+    line = f"{file}: partial: {NOTE} (--timeout gives it more time)\n"
+    assert (done.returncode, done.stderr) == (3, line)
+    assert done.stdout.endswith("\n")
+
+
 def test_what_ends_a_drawing_leaves_the_file_as_it_was(tmp_path):
     def stopped():
         raise Stopped("interrupted")

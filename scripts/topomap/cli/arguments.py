@@ -215,6 +215,21 @@ def add_environments(command: Parser, common: Parser, rest: str) -> Any:
     return kinds
 
 
+def add_straight(add: Any, otherwise: str = "") -> None:
+    """Add the option that tells which exits are on one path.
+
+    ``otherwise`` completes the sentence about what is so without the option.
+    """
+    add(
+        "--straight",
+        type=number(float, 0, 180),
+        metavar="DEGREES",
+        help="two exits of a place are on one path if each is the one most nearly opposite to "
+        "the other, and if they are off from being opposite by at most DEGREES degrees "
+        f"(default: exits in opposite slots are on one path{otherwise})",
+    )
+
+
 def _add_file(command: Parser) -> None:
     """Add the options that tell how a file with a world is read."""
     add = command.add_argument
@@ -233,14 +248,7 @@ def _add_file(command: Parser) -> None:
         help="bearing of slot 0, clockwise of north; auto: the bearing that may be off the most "
         "before two exits of a place share a slot (default: auto)",
     )
-    add(
-        "--straight",
-        type=number(float, 0, 180),
-        metavar="DEGREES",
-        help="two exits of a place are on one path if each is the one most nearly opposite to "
-        "the other, and if they are off from being opposite by at most DEGREES degrees "
-        "(default: exits in opposite slots are on one path)",
-    )
+    add_straight(add)
     add(
         "--along",
         type=number(float, 0),

@@ -3,7 +3,7 @@
 import argparse
 from typing import Any
 
-from topomap.cli.arguments import command, number, number_or_auto
+from topomap.cli.arguments import add_straight, command, number, number_or_auto
 from topomap.runtime import formats
 from topomap.runtime.errors import say
 from topomap.runtime.files import output
@@ -58,15 +58,7 @@ def add(group: Any) -> None:
         "place to the next, which tells the exit by which one arrived where the log does "
         "not (default: nothing is known about bends)",
     )
-    add(
-        "--straight",
-        type=number(float, 0, 180),
-        metavar="DEGREES",
-        help="two exits of a place are on one path if each is the one most nearly opposite to "
-        "the other, and if they are off from being opposite by at most DEGREES degrees "
-        "(default: exits in opposite slots are on one path; if no number of slots fits the "
-        "bearings, the limit is chosen)",
-    )
+    add_straight(add, "; if no number of slots fits the bearings, the limit is chosen")
     add(
         "--unit",
         type=number(float, 1e-9, LARGEST),
