@@ -44,15 +44,15 @@ RUNS = [
 ]
 HEAD = f"""# A step of `topomap follow`
 
-Written by `python -m bench.online` in `tests/`. A step *online* is `OnlineSolver.step` and
-`OnlineSolver.status`: the children of each hypothesis, or what is new is ground, then the number of
-hypotheses (up to {MOST_COUNTED:,}; of
-more it says so), the best maps, and what is certain. *From scratch* the experience up to that
-step is ground and counted, then ground again for the best maps, as `topomap count` and `solve
---optimal` do; what is certain is not asked for. *Rules* are ground rules: those that the step
-added (0 where clingo was not asked), and those of the count from scratch. Seconds are those of
-the processor, without the start of Python. The number of hypotheses and the best maps are compared
-at each step, and are the same.
+This page is written by `python -m bench.online` in `tests/`. A step *online* calls
+`OnlineSolver.step` and `OnlineSolver.status`: each hypothesis is extended by the step, or what is
+new is grounded; then the hypotheses are counted (up to {MOST_COUNTED:,}; a larger number is shown
+as `> {MOST_COUNTED:,}`), and the best maps and what is certain are found. *From scratch*, the
+experience up to that step is grounded and counted, and then grounded again for the best maps, as
+`topomap count` and `solve --optimal` do; what is certain is not asked for. *Rules* are ground
+rules: those that the step added (0 where clingo was not asked), and those of the count from
+scratch. Seconds are processor time, without the start of Python. The number of hypotheses and the
+best maps are compared at each step, and are the same.
 """
 
 
@@ -133,8 +133,8 @@ def table(run: tuple[str, bool, int | None], steps: list[Measured]) -> str:
 
 
 # Random walks through grids: the side, the steps, whether each place has a landmark of its own, and
-# whether it is also told, with a compass, which earlier place each place is; planar; at most so
-# many places.
+# whether there are a compass and facts that say which earlier place each place is; planar; the most
+# places.
 LONG = [
     (12, 2000, True, True, False, None),
     (12, 2000, True, False, False, None),
@@ -187,13 +187,14 @@ def long_walk(
 LONG_HEAD = """
 ## Long walks
 
-Random walks through grids. In a *signed* one each place has a landmark of its own; but the theory
-does not take for granted that a place with the same landmark is the same place, so hypotheses
-multiply. Where *places are known*, each step has `same(T,U)` with the first visit of its place, and
-a compass: then one hypothesis lives. *Partial* is why the answer at the end is, if it is: then only
-some hypotheses are kept. A step is reading a line, going on, the answer and its text; milliseconds
-are the median of the steps from 150 to 199, and of the last fifty; memory is the most up to step
-200, and up to the end; the last column is the longest step.
+These are random walks through grids. In a *signed* grid each place has a landmark of its own. The
+theory does not assume that two visits with the same landmark are to the same place, so hypotheses
+multiply. Where *places are known*, each step has a compass, and a fact `same(T,U)` that names the
+first visit to its place; then one hypothesis is left. *Partial* gives the reason if the answer at
+the end is partial: then only some hypotheses are kept. The time of a step covers reading a line,
+finding the new hypotheses, the answer and its text. Milliseconds are medians: *early* of the steps
+from 150 to 199, *late* of the last fifty. Memory is the most that was in use: *early* up to step
+200, *late* up to the end. The last column is the longest step.
 
 | walk | steps | hypotheses | partial | ms early | late | ratio | MB early | late | ratio | s |
 |---|---:|---:|---|---:|---:|---:|---:|---:|---:|---:|
