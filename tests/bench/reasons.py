@@ -1,4 +1,4 @@
-"""How many reasons ``explain`` tells where there is no map, and how long that takes.
+"""How many reasons ``explain`` gives where there is no map, and how long that takes.
 
     cd tests && python -m bench.reasons
 
@@ -114,16 +114,16 @@ def table(rows: list[dict[str, Any]], passed: int) -> str:
     enough = sum(one.get("enough", False) for one in rows)
     text = (
         f"These are the figures of {len(rows)} walks of up to {STEPS} steps without a map, with "
-        f"several combinations of parts. The search in Python, given {SEARCHED} seconds, proves of "
-        f"{searched} of them that there is none. Of {minimal} it is proved that no reason can be "
-        f"spared. The reasons of {len(gathered)} walks are gathered, and of {sure} of these it is "
-        f"proved that fewer would not be enough. That each reason is needed was checked by the "
-        f"definitions of the rules, without clingo, for {needed} walks; and that they are enough, "
-        f"by trying all assignments of places, for {enough}. The others have too many assignments "
-        f"to be tried, or a map in which a gateway has two links, of which planarity and the sides "
-        f"of paths are not defined. {passed} more walks were passed over: a default stands in the "
-        f"way of a closed map, and that is said instead of reasons. A yardstick is the time of "
-        f"`{YARDSTICK}`, measured after each command."
+        f"several combinations of parts. For {searched} of them the search in Python, given "
+        f"{SEARCHED} seconds, proves that there is no map. For {minimal} it is proved that no "
+        f"reason can be left out. The reasons of {len(gathered)} walks are gathered, and for "
+        f"{sure} of these it is proved that fewer would not be enough. For {needed} walks it was checked "
+        f"by the definitions of the rules, without clingo, that each reason is needed; and for "
+        f"{enough}, by trying all assignments of places, that the reasons are enough. The others "
+        f"have too many assignments to be tried, or a map in which a gateway has two links, for "
+        f"which planarity and the sides of paths are not defined. {passed} more walks were passed "
+        f"over: a default stands in the way of a closed map, and `explain` says that instead of "
+        f"giving reasons. A yardstick is the time of `{YARDSTICK}`, measured after each command."
     )
     wrapped = textwrap.fill(text, 120, break_on_hyphens=False)
     return wrapped + "\n\n" + "\n".join(lines) + "\n"
