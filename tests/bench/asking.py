@@ -2,8 +2,9 @@
 
     cd tests && python -m bench.asking
 
-Writes docs/asking.md. Exit status: 0 all is measured and right, 1 an answer is wrong. What is
-right is found in another way: by the maps that the search enumerates, or it is the real map.
+Writes docs/asking.md. Exit status: 0 if all is measured and right; 1 if an answer is wrong.
+The right answer is found in another way, from the maps that the search enumerates, or it is the
+real map.
 """
 
 import json
@@ -35,9 +36,10 @@ TIMES = 3
 SNAKE = "instances/grid-4x4-snake.lp"
 HEAD = """# What it takes to ask
 
-Written by `make bench` (`python -m bench.asking` in `tests/`). Seconds are of whole commands, the
-start of Python included: the median of {times} runs on one core. Each answer is compared with one
-that was found in another way; that reasons are minimal is the word of `explain` itself.
+Written by `make bench` (`python -m bench.asking` in `tests/`). Seconds are those of whole commands,
+including the start of Python; each figure is the median of {times} runs on one core. Each answer is
+compared with one that was found in another way. Only the minimality of reasons is not: here it is
+what `explain` itself says.
 
 | command | answer | s |
 | --- | --- | --: |

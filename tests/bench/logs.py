@@ -47,23 +47,24 @@ WORLDS = (
 )
 HEAD = """# Long logs
 
-Written by `make bench` (`python -m bench.logs`): random walks through three grids, five of each
-length. Seconds are those of whole processes, by the clock, on {cores} cores, at a load of
-{load:.1f} when it began. The yardstick Y is `clingo -q` on the 4x4 snake with at most 16 places,
-all maps, in the same run: {yard:.3f} s. A call is cut after 1.5 times its goal, or after
-{limit:.0f} Y where there is none.
+Written by `make bench` (`python -m bench.logs`). The logs are random walks through three grids,
+five of each length. Seconds are those of whole processes, by the clock, on {cores} cores, at a load
+of {load:.1f} when the run began. The yardstick Y is the time of `clingo -q` for all maps of the
+4x4 snake with at most 16 places, in the same run: {yard:.3f} s. A call is cut after 1.5 times
+its goal, or after {limit:.0f} Y if it has no goal.
 
 ## All maps
 
-With at most as many places as the world has. The goal is 65 Y for 4,000 steps, and 400 Y for
-50,000.
+The maps may have at most as many places as the world has. The goal is 65 Y for 4,000 steps, and
+400 Y for 50,000 steps.
 """
 BEST_HEAD = """
-## The best map that is soon found
+## The best map that is found soon
 
-`topomap solve --minimal`, any number of places, cut after {best} Y: in how many of the five walks
-there is a map by then; of how many of these it has as few paths and places as the world; and of how
-many of the maps it is proved that they are best. (A map with fewer of both may fit a walk, too.)
+`topomap solve --minimal`, with any number of places, is cut after {best} Y. The columns are: in how
+many of the five walks it has found a map by then; how many of these maps have as many paths and
+places as the world; how many have fewer paths, or as many paths and fewer places; and how many are
+proved to be best. (A map with fewer paths and fewer places may fit a walk, too.)
 """
 
 

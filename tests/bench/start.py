@@ -2,7 +2,7 @@
 
     PYTHONPATH=tests python -m bench.start
 
-Writes docs/start.md. Exit status: 0 each goal is met, 1 one is missed.
+Writes docs/start.md. Exit status: 0 if each goal is met; 1 if one is missed.
 """
 
 import os
@@ -27,8 +27,10 @@ CALLS = {
 }
 HEAD = f"""# What it takes to begin
 
-Written by `make bench` (`python -m bench.start`). Processor milliseconds of whole processes, the
-median of {TIMES} runs that take turns; the goal is at most {MOST} times.
+Written by `make bench` (`python -m bench.start`). Each call of `topomap` is compared with Python
+that only imports what the call cannot do without. The figures are processor milliseconds of whole
+processes, the median of {TIMES} runs in which the two take turns. The goal is a ratio of at
+most {MOST}.
 
 | `topomap` | ms | beside `python -c` | ms | ratio |
 | --- | --: | --- | --: | --: |

@@ -67,15 +67,16 @@ MORE = {  # rows that docs/benchmark.md does not have: the call that makes it, a
     ),
 }
 HOW = (
-    "Written by `make bench` (`python -m bench.ways`): `topomap solve`, which [takes the "
-    "way](ways.md) that has less work to do, beside each way alone. Seconds are those of whole "
-    "processes, by the clock and of the processor, with the answer written to a file, on {cores} "
-    "cores at a load of {load:.1f}. The yardstick Y is `clingo -q` on the 4x4 snake with at most "
-    "16 places, all maps, in the same run: {yard:.3f} s by the clock.",
-    "The goal: by the clock, at most {wall} times what the faster of the two ways takes alone, "
-    "plus {slack} Y; and at most {processor} times the processor time of that way. A way is cut "
-    "when it takes three times as long as `solve`, but not before {least:g} s, and at {limit:g} s "
-    "at the latest.",
+    "Written by `make bench` (`python -m bench.ways`). It compares `topomap solve`, which "
+    "[takes the way](ways.md) that needs less work, with each way alone. Seconds are those of "
+    "whole processes, by the clock and (in brackets) of the processor, with the answer written "
+    "to a file, on {cores} cores at a load of {load:.1f}. The yardstick Y is the time of "
+    "`clingo -q` for all maps of the 4x4 snake with at most 16 places, in the same run: "
+    "{yard:.3f} s by the clock.",
+    "The goal is at most {wall} times what the faster of the two ways takes alone, plus {slack} "
+    "Y, by the clock; and at most {processor} times the processor time of that way. A way is "
+    "cut when it takes three times as long as `solve`, but not before {least:g} s, and at "
+    "{limit:g} s at the latest.",
 )
 
 
@@ -202,8 +203,9 @@ def answers(yard: float, folder: str) -> tuple[str, bool]:
     ]
     told = table(["how", "s", "goal", "s : goal"], made)
     why = (
-        f"All {len(document['maps']):,} maps of the 4x4 snake with at most 16 places. The goal of "
-        "text is 6 Y, plus 35 microseconds for each map. The goal of JSON is that of text, plus "
+        f"The table shows what it takes to find and write all {len(document['maps']):,} maps of "
+        "the 4x4 snake with at most 16 places. The goal for text is 6 Y, plus 35 microseconds for "
+        "each map. The goal for JSON is that for text, plus "
         f"1.5 times what `json.dumps` takes for the finished documents ({dumps:.2f} s).\n\n"
     )
     return why + told, any(took > goal for _, took, goal in lines)
@@ -276,7 +278,7 @@ def main() -> int:
         "# One solve\n",
         *(text + "\n" for text in how),
         table([*head, "s : goal", "processor : better"], lines),
-        "## Answers, written down\n",
+        "## Writing the answers\n",
         told,
         "## A robot\n",
         robots,
