@@ -120,8 +120,8 @@ def table(rows: list[dict[str, Any]], passed: int) -> str:
         f"{sure} of these it is proved that fewer would not be enough. For {needed} walks it "
         f"was checked by the definitions of the rules, without clingo, that each reason is needed; "
         f"and for {enough}, by trying all assignments of places, that the reasons are enough. The "
-        f"others have too many assignments to be tried, or a map in which a gateway has two links, for "
-        f"which planarity and the sides of paths are not defined. {passed} more walks were passed "
+        f"others have too many assignments to be tried, or a map in which a gateway has two links, "
+        f"for which planarity and the sides of paths are not defined. {passed} more walks were passed "
         f"over: a default stands in the way of a closed map, and `explain` says that instead of "
         f"giving reasons. A yardstick is the time of `{YARDSTICK}`, measured after each command."
     )
