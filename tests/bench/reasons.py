@@ -121,9 +121,10 @@ def table(rows: list[dict[str, Any]], passed: int) -> str:
         f"was checked by the definitions of the rules, without clingo, that each reason is needed; "
         f"and for {enough}, by trying all assignments of places, that the reasons are enough. The "
         f"others have too many assignments to be tried, or a map in which a gateway has two links, "
-        f"for which planarity and the sides of paths are not defined. {passed} more walks were passed "
-        f"over: a default stands in the way of a closed map, and `explain` says that instead of "
-        f"giving reasons. A yardstick is the time of `{YARDSTICK}`, measured after each command."
+        f"for which planarity and the sides of paths are not defined. {passed} more walks were "
+        f"passed over: a default stands in the way of a closed map, and `explain` says that "
+        f"instead of giving reasons. A yardstick is the time of `{YARDSTICK}`, measured after "
+        f"each command."
     )
     wrapped = textwrap.fill(text, 120, break_on_hyphens=False)
     return wrapped + "\n\n" + "\n".join(lines) + "\n"
