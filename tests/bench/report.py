@@ -11,24 +11,24 @@ from bench.measure import FIGURES
 REFERENCE = Path(__file__).with_name("reference.toml")
 HEAD = """# Benchmark
 
-Written by `make bench`; the figures are in `results/bench.json` too. `tests/bench/rows.toml`
+Written by `make bench`; the figures are also in `results/bench.json`. `tests/bench/rows.toml`
 lists the tasks.
 """
 HOW = """
 Each measurement is a process of its own, on one core: Python, the package, and clingo with its
-default options, but for what `phases.py` asks of it. `baseline` is `encodings/` at the git
-revision `{revision}`, `work` is `encodings/` as it is now,
-`search` is the package's depth-first search, in Python, which looks ahead.
-Figures of several programs are added up. Seconds are those from the facts to the last
-answer, without the start of Python; memory is the most that the process had{start}. In each
-repetition the ways take turns, so that ratios are of one run; figures are medians. A way is
-measured {repeat} times at most, again only while it took less than {enough:g} s so far. Our
-encodings are cut after {limit:g} s, the others after {others:g} s, and at {memory:,} MB; growth
-rows have limits of their own. What was cut gives a bound; a way that was cut is not tried at the
-harder rows of the same kind, but for our encodings where there is a goal. A row counts only if
-each way that ended gave the expected answer: the number of maps, the real map among them where
-all are listed, none twice. Where one is wrong or the ways differ, it is WRONG, and has no
-figures.
+default options, except for what `phases.py` asks of it. `baseline` is `encodings/` at the git
+revision `{revision}`, `work` is `encodings/` as it is now, `search` is the package's depth-first
+search, in Python, which looks ahead. If a row is solved by several programs, their figures are
+added up. Seconds are those from the facts to the last answer, without the start of Python; memory
+is the most that the process used{start}. In each repetition the ways take turns, so that ratios
+compare figures of one run; the figures given are medians. A way is measured {repeat} times at
+most, and is measured again only if it has taken less than {enough:g} s so far. Our encodings are
+cut after {limit:g} s, the others after {others:g} s, and all at {memory:,} MB; growth rows have
+limits of their own. For a way that was cut, a lower bound is given. A way that was cut is not
+tried at the harder rows of the same kind; our encodings are, where there is a goal. A row counts
+only if each way that ended gave the expected answer: the number of maps is right, the real map is
+among them where all are listed, and no map is given twice. A row in which an answer is wrong, or
+in which the ways differ, is marked WRONG, and has no figures.
 """
 
 
@@ -173,11 +173,12 @@ def _growth(found: list[dict[str, Any]], picture: str) -> str:
             ]
         )
     head = ["series", "figure", "way", "exponent", "R²", "fitted from", "points"]
-    least = ", ".join(f"{number(value)} {figure}" for figure, value in LEAST.items() if value != 1)
+    least = [f"{number(value)} {figure}" for figure, value in LEAST.items() if value != 1]
+    least_of_all = f"{', '.join(least[:-1])} or {least[-1]}"
     return (
         f"![rules, conflicts and seconds as tasks grow]({picture})\n\n"
-        "Exponents are those of y = a x^exponent, by least squares of the logarithms, over the "
-        f"points of at least {least}; a triangle is a run that the time limit cut.\n\n"
+        "Exponents are those of y = a x^exponent, fitted by least squares of the logarithms to "
+        f"the points with at least {least_of_all}. A triangle is a run that the time limit cut.\n\n"
         + table(head, lines, 3)
     )
 
@@ -216,7 +217,7 @@ def text(document: dict[str, Any], picture: str) -> str:
     ]
     start = f", of which Python and the package are {number(min(starts))} MB" if starts else ""
     how = HOW.format(**document["plan"], revision=document["baseline"], start=start)
-    how = "\n" + textwrap.fill(how, 98, break_on_hyphens=False) + "\n"
+    how = "\n" + textwrap.fill(how.strip(), 98, break_on_hyphens=False) + "\n"
     parts = [
         HEAD,
         table(
@@ -228,7 +229,7 @@ def text(document: dict[str, Any], picture: str) -> str:
         *map(_again, document["again"]),
         "## What our encodings take\n",
         _results([row for row in rows if row["cut"] is None]),
-        "## Beside a trial\n",
+        "## Compared with a trial\n",
         _reference(rows),
         "## Growth\n",
         _growth(document["growth"], picture),
@@ -259,9 +260,9 @@ def memory(found: dict[str, Any]) -> str:
     tenths = [f"{mb:.0f}" for mb in found["tenths"]]
     flat = "The memory does not grow." if found["flat"] else "**The memory grows.**"
     return (
-        f"`topomap solve --output` of {found['maps']:,} maps of the 5x4 grid, at most 20 places, "
-        f"in {number(found['seconds'])} s; the most memory, in MB, until each tenth of the file "
-        f"was written: {', '.join(tenths)}. {flat}\n"
+        f"`topomap solve --output` of {found['maps']:,} maps of the 5x4 grid, with at most 20 "
+        f"places, takes {number(found['seconds'])} s. The most memory used, in MB, until each tenth of the "
+        f"file was written: {', '.join(tenths)}. {flat}\n"
     )
 
 
