@@ -261,8 +261,9 @@ def memory(found: dict[str, Any]) -> str:
     flat = "The memory does not grow." if found["flat"] else "**The memory grows.**"
     return (
         f"`topomap solve --output` of {found['maps']:,} maps of the 5x4 grid, with at most 20 "
-        f"places, takes {number(found['seconds'])} s. The most memory used, in MB, until each tenth of the "
-        f"file was written: {', '.join(tenths)}. {flat}\n"
+        f"places, takes {number(found['seconds'])} s. The most memory used, in MB, until each "
+        "tenth of the file was "
+        f"written: {', '.join(tenths)}. {flat}\n"
     )
 
 
