@@ -175,7 +175,7 @@ def demand_words(experience, answer):
         if kind == "itself":
             assert words.endswith(f" {'{}.{}'.format(*at[numbers[0]])}")
         if kind == "planar":
-            match = re.search(r"cycle of steps? ([\d ]+), round by places? ([\d ]+), to", words)
+            match = re.search(r"cycle of steps? ([\d ]+), which passes places? ([\d ]+), to", words)
             steps, places = ([int(n) for n in group.split()] for group in match.groups())
             assert places[0] == places[-1]
             assert steps[-1] == numbers[0]
@@ -537,7 +537,7 @@ def test_the_answer_in_lines(topomap, tmp_path):
     assert first == "same(3,8): impossible, already after step 8"
     assert second == (
         "  view(8,3): views: after step 8 the agent sees the gateways 0 1, after step 3 0 2 3: "
-        "no turn of one gives the other"
+        "no turn of one view gives the other"
     )
     assert re.fullmatch(r"    without it: 0\.0( \d\.\d){7} 3\.\d", third)
     assert last == "this one reason is enough"

@@ -199,7 +199,7 @@ def test_words():
         (
             {"shifts": [(10, 0), (0, 10), (-3, 0), (0, -10)]},
             "same(0,4)",
-            "step 4 is at least 3.7 units from step 0 by its odometry: 7 were measured, on a way "
+            "step 4 is at least 3.7 units from step 0 by its odometry: 7 were measured on a way "
             "of 33, wrong by 10 % at most",
         ),
         ({"apart": [(0, 4)]}, "same(0,4)", "have been at two places after steps 0 and 4"),
@@ -213,7 +213,7 @@ def test_words():
         assert any(words in line for line in found.lines()), [*found.lines()]
     back = Experience(4, [[0], [0, 2], [0]], [0, 0], lengths=[100, 50])
     told = [*topomap.explain(back).lines()]
-    assert any("steps 1 and 2 would go by one link, and are 100 and 50" in one for one in told)
+    assert any("steps 1 and 2 would go along one link, and are 100 and 50" in one for one in told)
     looks = Experience(4, [[0], [0, 1], [0, 1, 2]], [0, None], looks=[2])
     told = [*topomap.explain(looks).lines()]
     assert any("the second look of step 2" in one for one in told), told

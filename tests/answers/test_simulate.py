@@ -276,11 +276,11 @@ def test_how_it_ends(topomap, call, status, words):
     ("line", "fault"),
     [
         ("grid 2", "topomap simulate grid: the following arguments are required: columns"),
-        ("grid 2 3 --json", "list, -o, --instance and --json have no place in a list"),
-        ("list other.txt", "list, -o, --instance and --json have no place in a list"),
+        ("grid 2 3 --json", "list, -o, --instance and --json cannot be used in a list"),
+        ("list other.txt", "list, -o, --instance and --json cannot be used in a list"),
         ("grid 2 3 --start 7,7", "grid-2x3: there is no place '7,7'"),
         ("grid 2 3 --facing 0", "grid-2x3: place 0,0 has no gateway 0"),
-        ("grid --help", "--help has no place in a list"),
+        ("grid --help", "--help cannot be used in a list"),
     ],
 )
 def test_a_bad_line_of_a_list_is_named(topomap, tmp_path, line, fault):

@@ -83,7 +83,7 @@ def test_what_solve_refuses(seen):
         ({"encoding": "slow"}, "encoding='slow'"),
         ({"noise": 1, "by": "search"}, "noise cannot be combined with"),
         ({"noise": 1, "encoding": "paper"}, "cannot be combined with noise"),
-        ({"genus": True, "encoding": "paper"}, "does not state genus"),
+        ({"genus": True, "encoding": "paper"}, "has no rules for genus"),
         ({"limit": 0}, "limit=0"),
         ({"optimal": True, "jobs": 2}, "not that for the best ones"),
     ):

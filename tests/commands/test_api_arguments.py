@@ -191,7 +191,7 @@ def test_parts_beside_candidates_are_not_passed_over():
     with pytest.raises(ValueError, match="bound=-5"):
         topomap.explore(SEEN, given, bound=-5)
     for more in ({"bound": 9}, {"horizon": 3}, {"planar": True}):
-        with pytest.raises(ValueError, match="are told to candidates"):
+        with pytest.raises(ValueError, match="to candidates, not to explore"):
             topomap.explore(SEEN, given, **more)
 
 

@@ -320,7 +320,7 @@ def test_an_experience_is_made_of_lists():
         "turn(1,0). view(1,0). view(1,1). landmark(1,pub).",
     ]
     for views, turns, landmarks in ([[0]], [0], None), ([[0], [0]], [0], [[]]), ([], [], None):
-        with pytest.raises(ValueError, match=r"of n turns there are n \+ 1 views"):
+        with pytest.raises(ValueError, match=r"n turns need n \+ 1 views"):
             topomap.Experience(4, views, turns, landmarks)
 
 

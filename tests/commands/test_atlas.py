@@ -176,8 +176,8 @@ def test_a_cut_atlas_keeps_the_worlds_that_are_done(inside, listed, monkeypatch)
         ("grid 2 2 --facing 0\n", ":1: grid-2x2: place 0,0 has no gateway 0"),
         ("grid 1 1\n", ":1: an environment needs a way between two places"),
         ("world none.json\n", "none.json: no such file or directory"),
-        ("grid --help\n", ":1: --help has no place in a list"),
-        ("# nothing\n", ": there is no world in it"),
+        ("grid --help\n", ":1: --help cannot be used in a list"),
+        ("# nothing\n", ": it has no worlds"),
         ('grid 2 2 "\n', ":1: no closing quotation"),
     ],
 )
@@ -194,15 +194,15 @@ def test_bad_lines(inside, listed, tmp_path, text, fault):
 @pytest.mark.parametrize(
     ("call", "fault"),
     [
-        ([], "a file of WORLDS is wanted, or --from FILE, and not both"),
-        (["{list}", "--from", "{list}"], "and not both"),
-        (["--from", "{list}", "--most", "3"], "--most has no place with --from"),
-        (["--from", "{list}", "--json"], "have no place with --from"),
+        ([], "give either a file of WORLDS or --from FILE"),
+        (["{list}", "--from", "{list}"], "give either a file of WORLDS or --from FILE"),
+        (["--from", "{list}", "--most", "3"], "--most cannot be used with --from"),
+        (["--from", "{list}", "--json"], "cannot be used with --from"),
         (["{list}", "--most", "0"], "'0' is not a whole number, from 1 to 1000000"),
         (["{list}", "--seconds", "0"], "not a number"),
         (["none.txt"], "none.txt: no such file or directory"),
         (["--from", "none.json"], "none.json: no such file or directory"),
-        (["--from", "{list}"], "worlds.txt: no JSON"),
+        (["--from", "{list}"], "worlds.txt: not JSON"),
         (["{list}", "-o", "{list}"], "it is an input, so it cannot be written"),
     ],
 )

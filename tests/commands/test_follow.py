@@ -209,7 +209,7 @@ BAD = [
     ("turn(2,4).", "step 2: slot 4 is not in 0..3"),
     ("turn(2,1).", "step 2: turn 1: no gateway there after step 1"),
     ("turn(2,0). turn(2,2).", "step 2: more than one turn"),
-    ("slots(4).", "slots are told twice"),
+    ("slots(4).", "slots are given twice"),
     ("view(2,0) :- a.", "'view(2,0) :- a' is not a ground fact"),
     ("#script (python) print(1) #end.", "is not a ground fact"),
     ("view(2,0)", "'view(2,0)' does not end"),
@@ -224,7 +224,7 @@ BAD = [
     ('{"turn": 0, "view": [0], "drop": 1}', "drop: true or false is wanted"),
     ('{"turn": 0, "view": [0], "pick": true}', "step 2: the marker is taken up, but lies nowhere"),
     ("undo(2).", "undo of 2 steps: to take back: 1 step"),
-    ('{"turn": 0, "view": [0]', "no JSON text"),
+    ('{"turn": 0, "view": [0]', "not a JSON text"),
     ("[1]", "a JSON object is wanted"),
     ('{"turn": 0}', "view is missing"),
     ('{"view": [0]}', "turn is missing"),
@@ -243,17 +243,17 @@ BAD = [
     ('{"turn": 0, "view": [0], "shift": [1]}', "shift: a list of two whole numbers is wanted"),
     ('{"turn": 0, "view": [0], "shift": [0, 21474837]}', "step 2: the shifts up to here come to"),
     ('{"turn": 0, "view": [0], "length": 0}', "step 2: length 0 is not above 0"),
-    ('{"turn": 0, "view": [0], "apart": [2]}', "step 2: it is told to be of another place"),
+    ('{"turn": 0, "view": [0], "apart": [2]}', "step 2: it is said to be at another place"),
     ('{"turn": 0, "view": [0], "same": [3]}', "same: step 3 is later than step 2"),
     (
         '{"look": true, "view": [0], "length": 5}',
-        "step 2: there is a length, but it is not a travel",
+        "step 2: there is a length, but it is not a travel step",
     ),
     ('{"look": true, "start": true, "view": [0]}', "step 2: it begins a log, and is a second look"),
     ('{"turn": 0, "view": [0], "drop": [7]}', "drop: true or false is wanted, or the names of"),
     ('{"turn": 0, "view": [0], "drop": "a)."}', "drop: "),
     ('{"turn": 0, "view": [0], "pick": "a"}', "the marker a is taken up, but lies nowhere"),
-    ("start(2). view(2,0). turn(2,0).", "step 2: it has a turn, but is not a travel"),
+    ("start(2). view(2,0). turn(2,0).", "step 2: it has a turn, but is not a travel step"),
     ('{"undo": 5}', "undo of 5 steps: to take back: 1 step"),
     ("\0", "not text"),
 ]
@@ -287,7 +287,7 @@ def test_a_key_that_is_null_is_not_told():
     assert recorded([json.dumps(null | first), json.dumps(null | second)]) == plain
     false = {"start": False, "look": False, "marker": False}
     assert recorded([json.dumps(false | first), json.dumps(false | second)]) == plain
-    with pytest.raises(InputError, match="it is the start already"):
+    with pytest.raises(InputError, match="it is already the start"):
         recorded([json.dumps(first | {"start": True})])
     with pytest.raises(ValueError, match="shift"):
         topomap_api.follow(4).step([0], shift=())
@@ -407,7 +407,7 @@ def test_a_torn_log(topomap, tmp_path):
     log = tmp_path / "walk.log"
     log.write_text("\n".join(LINES[:4]) + "\nturn(3,3). vi")
     done = topomap("follow", "--json", "--log", log, input=LINES[4])
-    assert done.stderr == f"{log}:5: torn, dropped\n"
+    assert done.stderr == f"{log}:5: an incomplete line, dropped\n"
     assert [one["step"] for one in answers(done.stdout)] == [2, 3]
     assert log.read_text() == "\n".join(LINES[:5]) + "\n"
     log.write_text("slots(4).\nview(0,X).\n")
@@ -438,7 +438,7 @@ def test_two_do_not_share_a_log(topomap, tmp_path):
     first.stdin.flush()
     assert first.stdout.readline()
     done = topomap("follow", "--log", log, input=LINES[2])
-    assert (done.returncode, done.stderr) == (2, f"{log}: another follower has it\n")
+    assert (done.returncode, done.stderr) == (2, f"{log}: another topomap follow is writing it\n")
     first.communicate(timeout=20)
 
 

@@ -184,7 +184,7 @@ def test_make_writes_the_manual_pages(tmp_path):
         (["export", GRID, "--format", "graphlm"], "'graphlm' (did you mean graphml? choose"),
         (["generate", "grid", "2", "2", "--roote", "E"], "--route (did you mean --route? see"),
         (["ask", GRID, "plannar"], "plannar: no such word; did you mean planar?"),
-        (["ask", GRID, "place < 3"], "place: no number of a map; did you mean places?"),
+        (["ask", GRID, "place < 3"], "place: not a number of a map; did you mean places?"),
         (["explore", GRID, "--among", "optimall"], "did you mean optimal?"),
         (["--print-completion", "bsh"], "'bsh' (did you mean bash? choose from bash, zsh, tcsh)"),
     ],

@@ -250,7 +250,7 @@ def test_depths_and_legs_that_nobody_measured(tmp_path):
         ("*data normal from to tape ignoreall compass", 1, "last"),
         ("*frobnicate", 1, r"\*frobnicate is not read"),
         ("*prefix a", 1, r"\*prefix is not read"),
-        ("*", 1, "command is to follow"),
+        ("*", 1, "command must follow"),
         ("1 2 10 0", 1, "no clino: this line has 4 of 5"),
         ("1 2 10 0 0 0", 1, "'0' is more than is wanted"),
         ("1 2 ten 0 0", 1, "'ten' is not a number"),

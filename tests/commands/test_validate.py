@@ -54,7 +54,7 @@ turn(2,2). view(2,0). view(2,2). landmark(2,lift).
     assert judged(one) == (0, ["valid: 1 step, 2 slots, 1 kind of view, 1 landmark"])
 
 
-MORE = "there may be more faults: what is missing can be told once every statement is a fact"
+MORE = "there may be more faults: what is missing can be said only when every statement is a fact"
 FAULTS = {  # and all that is said of them
     "": ["there are no facts in it"],
     "\n\nslots(4).\nslots(6). slots(8).\nview(0,0).": ["4: 3 facts slots(K); there must be one"],
@@ -85,7 +85,7 @@ FAULTS = {  # and all that is said of them
         MORE,
     ],
     "slots(4). view(0,0).\nstart(0).\nlook(0).": [
-        "2: step 0: it is the start already",
+        "2: step 0: it is already the start",
         "3: step 0: there is no earlier look",
     ],
     "slots(4). view(0,0).\nturn(1,0). view(1,0).\npick(1).\nmarker(0).\ndrop(1).": [

@@ -226,7 +226,7 @@ HOSTILE_JSON = {
     NODES % '{"source": {"a": 1}, "target": 2}': "edge 0, from 0: its name is neither a text",
     NODES % '{"source": true, "target": 2}': "its name is neither a text nor a number",
     NODES % '{"source": 1, "target": 2, "geometry": [[0,0],[1%s,0]]}' % ("0" * 400): "its geometry",
-    NODES % '{"source": 1, "target": 2, "geometry": {"coordinates": "x"}}': "its geometry is no",
+    NODES % '{"source": 1, "target": 2, "geometry": {"coordinates": "x"}}': "geometry is neither",
     NODES % "1": "its edges are not a list of objects",
     NODES.replace('"x": 1', '"x": 1e999') % '{"source": 1, "target": 2}': "place 2 has no coord",
     NODES.replace('"x": 1', '"x": NaN') % '{"source": 1, "target": 2}': "place 2 has no coord",
@@ -234,8 +234,8 @@ HOSTILE_JSON = {
     NODES.replace('"x": 1', f'"x": 1{"0" * 9000}') % "": "a number that is too long",
     NODES.replace('"id": 2', '"id": 1') % "": "node 1 occurs twice",
     NODES.replace('"id": 2', '"ident": 1') % "": "node 1 of the list, from 0, has no id",
-    NODES.replace('"id": 2', '"id": "\\ud800"') % "": "a name with a sign that is no letter",
-    NODES.replace('"id": 2', '"id": "\\u0000"') % "": "a name with a sign that is no letter",
+    NODES.replace('"id": 2', '"id": "\\ud800"') % "": "a name with a character that is not allowed",
+    NODES.replace('"id": 2', '"id": "\\u0000"') % "": "a name with a character that is not allowed",
     NODES.replace('"id": 2', f'"id": "{"x" * 2000}"') % "": "more than 1000 letters",
     '{"format": 2, ' + (NODES % "")[1:]: "format 2 is not known",
     '{"nodes": 3, "links": []}': "its nodes are not a list of objects",
@@ -249,7 +249,7 @@ HOSTILE_JSON = {
     '{"maps": []}': "no maps in it",
     '{"maps": [{"at": [[0,0,0]]}]}': "slots, places and links are wanted",
     '[{"at": [[0,0,0]]}]': "no number of slots in it",
-    '{"results": 3}': "results: no list of answers",
+    '{"results": 3}': "results: not a list of answers",
 }
 
 
@@ -630,9 +630,9 @@ def test_a_world_is_read_back_as_it_was(tmp_path, form, seed):
 def test_what_cannot_be_written_is_refused():
     odd = decorated(1)
     place = next(iter(odd.map.stars))
-    with pytest.raises(InputError, match="XML has no place for the name"):
+    with pytest.raises(InputError, match="XML cannot hold the name"):
         world_text(replace(odd, names={place: "a\x01"}), "graphml")
-    with pytest.raises(InputError, match="it is not told where place"):
+    with pytest.raises(InputError, match="the position of place"):
         world_text(replace(odd, moves={}), "tmap2")
     with pytest.raises(ValueError, match="'dot' is not one of graphml, json, tmap2"):
         world_text(odd, "dot")

@@ -264,7 +264,7 @@ def test_what_is_not_like_the_world_is_said(town):
     other = grid(2, 3).map
     found = likeness(other, loaded.environment.map, loaded.plan)
     assert found.where is None
-    assert "no part of the world" in found.note
+    assert "not a part of the world" in found.note
     names = {(0, 0): "dock", (0, 2): "market", (1, 0): "farm", (1, 1): "wood"}
     signed = type(other)(
         4, other.stars, other.links, {place: frozenset({f'"{n}"'}) for place, n in names.items()}

@@ -308,7 +308,7 @@ NONE = '{"Models": {"Number": 0, "More": "no"}, "Call": [{}]}'
 @pytest.mark.parametrize(
     ("text", "status", "said"),
     [
-        ('{"maps": []}', 3, "no map in it; partial: it is not said to be complete"),
+        ('{"maps": []}', 3, "no map in it; partial: its file does not say that it is complete"),
         (
             '{"maps": [], "count": 0, "complete": false, "fault": "timeout"}',
             *(3, "no map in it; partial: timeout"),

@@ -252,7 +252,7 @@ def test_hostile_worlds(tmp_path, arguments):
     [
         ("grid {1..999999999} 3 --route snake", ":1: more than 100000"),
         ("grid " + "{1,2}" * 40 + " 3 --route snake", ":1: more than 100000"),
-        ("grid 3 3 --help", ":1: --help has no place"),
+        ("grid 3 3 --help", ":1: --help cannot be used"),
         ("grid 3 3 --route E -o /etc/none", ":1: -o, --truth and --json"),
         ("\ngrid 3 3 --route 'E", ":2: no closing quotation"),
         ("grid 3 3 --route E\0", ": not a text file"),

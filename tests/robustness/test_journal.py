@@ -160,7 +160,7 @@ def test_without_resume_a_run_begins_anew(tmp_path, monkeypatch):
         (lambda text: text[:-3], None),  # cut in the middle of a line
         (lambda text: text[:20], None),  # or of the first one
         (lambda text: "", None),
-        (lambda text: text.replace('"facts and', '"other and'), "of another run"),
+        (lambda text: text.replace('"facts and', '"other and'), "belongs to another run"),
         (lambda text: "no journal\n" + text, "not a journal of this program"),
         (lambda text: text.replace("[1, 1]", "[2, 1]", 1), "damaged after unit"),
         (lambda text: text.replace("[1, 1]", "null", 1), "damaged after unit"),
@@ -247,7 +247,7 @@ def test_other_queries_and_instances_are_other_runs(tmp_path, monkeypatch, capsy
         ["count", PAPER],
     ):
         assert main([*call, "-o", file, "--resume"]) == 2
-        assert "of another run" in capsys.readouterr().err
+        assert "belongs to another run" in capsys.readouterr().err
     assert main(["solve", PAPER, *CLINGO, "--json", "--limit", "3", "-o", file, "--resume"]) == 3
 
 

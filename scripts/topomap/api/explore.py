@@ -212,7 +212,7 @@ def explore(
     watch = begin(experience, timeout)
     if isinstance(among, Candidates):
         if parts or bound is not None or horizon is not None:
-            raise ValueError("bound, horizon and parts are told to candidates, not to explore")
+            raise ValueError("give bound, horizon and parts to candidates, not to explore")
     else:
         among = candidates_under(watch, experience, asked, query)
     return explore_under(watch, among, marker, steps)

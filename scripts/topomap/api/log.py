@@ -52,9 +52,9 @@ def read_log(
             file, the line, the step and the fault.
     """
     if frame not in (None, *FRAMES):
-        raise ValueError(f"frame={frame!r}: it is {' or '.join(FRAMES)}")
+        raise ValueError(f"frame={frame!r}: it must be {' or '.join(FRAMES)}")
     if facing not in FACING:
-        raise ValueError(f"facing={facing!r}: it is {' or '.join(FACING)}")
+        raise ValueError(f"facing={facing!r}: it must be {' or '.join(FACING)}")
     return load(
         path_of(path),
         Options(

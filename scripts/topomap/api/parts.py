@@ -71,9 +71,9 @@ def query_of(
     """
     asked = frozenset(asked_of(parts, allowed))
     if encoding not in FORMS:
-        raise ValueError(f"encoding={encoding!r}: it is {' or '.join(FORMS)}")
+        raise ValueError(f"encoding={encoding!r}: it must be {' or '.join(FORMS)}")
     if encoding == "paper" and (others := unstated(asked)):
-        raise ValueError(f"encoding='paper' does not state {', '.join(others)}")
+        raise ValueError(f"encoding='paper' has no rules for {', '.join(others)}")
     if encoding == "paper" and noise is not None:
         raise ValueError("encoding='paper' cannot be combined with noise")
     return Query(
@@ -122,7 +122,7 @@ def demand_pairs(experience: object, where: str) -> None:
     """
     if isinstance(experience, Experience) and experience.assumed:
         known = "same(T,U) and not same(T,U)"
-        raise ValueError(f"{where} knows no statement that is taken for granted but {known}")
+        raise ValueError(f"{where} takes no other statement for granted than {known}")
 
 
 def begin(experience: Experience, timeout: float | None, noisy: bool = False) -> Watch:

@@ -215,4 +215,4 @@ def _missing(documents: Sequence[maps.Document], found: Sequence[Scene]) -> str 
         return None
     cut = [document for document in documents if not document.whole]
     told = [str(document.claims["fault"]) for document in cut if document.claims.get("fault")]
-    return (told or ["it is not said to be complete"])[0] if cut else None
+    return (told or ["its file does not say that it is complete"])[0] if cut else None

@@ -189,8 +189,8 @@ def add_environments(command: Parser, common: Parser, rest: str) -> Any:
         ("grid", "a grid of places, four slots, slot 0 north"),
         ("cylinder", "a grid whose rows are rings"),
         ("torus", "a grid whose rows and columns are rings"),
-        ("crescents", "a grid in which each two columns are joined by a way round their ends"),
-        ("maze", "a grid from which ways are taken away at random; it stays connected"),
+        ("crescents", "a grid whose columns are joined in pairs by ways round their ends"),
+        ("maze", "a grid from which ways are removed at random; it stays connected"),
         ("hexagons", "the corners of a sheet of hexagons, six slots"),
         ("triangles", "a triangular lattice, six slots"),
     ):
@@ -206,7 +206,7 @@ def add_environments(command: Parser, common: Parser, rest: str) -> Any:
                 type=number(float, 0, 1),
                 default=0.3,
                 metavar="RATE",
-                help="share of the ways to take away (default: %(default)s)",
+                help="share of the ways to remove (default: %(default)s)",
             )
     help = "a world from a file, such as a street network: see docs/files.md for the formats"
     for kind in ("world", "network"):  # "network" is the older name
@@ -245,8 +245,8 @@ def _add_file(command: Parser) -> None:
         "--north",
         type=number_or_auto(float, -LARGEST),
         metavar="DEGREES",
-        help="bearing of slot 0, clockwise of north; auto: the bearing that may be off the most "
-        "before two exits of a place share a slot (default: auto)",
+        help="bearing of slot 0, clockwise of north; auto: the bearing that leaves the widest "
+        "margin before two exits of a place share a slot (default: auto)",
     )
     add_straight(add)
     add(
@@ -264,7 +264,7 @@ def _add_file(command: Parser) -> None:
     units.add_argument(
         "--degrees", action="store_true", help="coordinates are longitude and latitude"
     )
-    add("--two-way", action="store_true", help="take ways that can be gone one way as two-way")
+    add("--two-way", action="store_true", help="treat one-way ways as two-way")
     add(
         "--loops",
         action="store_true",
@@ -411,7 +411,8 @@ def add_resume(command: Parser) -> None:
     command.add_argument(
         "--resume",
         action="store_true",
-        help="go on where the last run with this output file was cut short, which left FILE.part",
+        help="go on where the last run with this output file was cut short; that run left "
+        "FILE.part",
     )
 
 
@@ -439,8 +440,8 @@ def add_scene(command: Parser) -> None:
     add(
         "file",
         metavar="INSTANCE|MAPS.json",
-        help="an instance, of which an optimal map is shown or, if no map is closed, one of the "
-        "best so far; the options below choose which; or a file of maps, from topomap "
+        help="an instance, to show one of its optimal maps or, if no map is closed, one of the "
+        "best so far (the options below choose which); or a file of maps, from topomap "
         "solve --json",
     )
     add(
@@ -460,7 +461,7 @@ def add_scene(command: Parser) -> None:
     add(
         "--like",
         metavar="WORLD",
-        help="draw the places where they are in this file of a world, as for topomap generate, "
+        help="draw the places at their positions in this file of a world, as for topomap generate, "
         "with north up; the links, or landmarks that are names of places in the world, "
         "tell which place is which",
     )
@@ -468,7 +469,7 @@ def add_scene(command: Parser) -> None:
     add_asked(
         command,
         CHOSEN,
-        limit="take S seconds in all, about: if the search for optimal maps has not ended by then, "
+        limit="take about S seconds in all: if the search for optimal maps has not ended by then, "
         "a map is taken that is not proved to be best; and what cannot be drawn well in the time "
         f"that is left is drawn plainly (default: {DRAWING:g})",
     )

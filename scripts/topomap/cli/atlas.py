@@ -35,10 +35,15 @@ def add(group: Any) -> None:
         "file",
         nargs="?",
         metavar="WORLDS",
-        help="a file each line of which names a world by the arguments of topomap generate, such "
+        help="a file in which each line names a world by the arguments of topomap generate, such "
         "as: maze 4 4 --seed {0..2}; files of worlds are looked for from its folder",
     )
-    add("--from", dest="given", metavar="FILE", help="make the page of what --json wrote before")
+    add(
+        "--from",
+        dest="given",
+        metavar="FILE",
+        help="make the page from a file that --json wrote before",
+    )
     add(
         "--most",
         type=number(int, 1, 10**6),
@@ -59,7 +64,7 @@ def add(group: Any) -> None:
         help=f"the random walk has N steps at most (default: {STEPS})",
     )
     add("--seed", type=number(int, 0), metavar="N", help="seed for random walks (default: 0)")
-    add("--no-peers", action="store_true", help="do not ask AALpy, also where it is installed")
+    add("--no-peers", action="store_true", help="do not run AALpy, even if it is installed")
     add(
         "--timeout",
         type=number(float, 0.001),
@@ -77,19 +82,19 @@ def run(args: argparse.Namespace) -> int:
     from topomap.runtime.watch import heeding
 
     if (args.file is None) == (args.given is None):
-        raise InputError("topomap atlas: a file of WORLDS is wanted, or --from FILE, and not both")
+        raise InputError("topomap atlas: give either a file of WORLDS or --from FILE")
     if args.given is not None:
         for name in ("most", "seconds", "steps", "seed", "timeout"):
             if getattr(args, name) is not None:
-                raise InputError(f"topomap atlas: --{name} has no place with --from")
+                raise InputError(f"topomap atlas: --{name} cannot be used with --from")
         if args.no_peers or args.json:
-            raise InputError("topomap atlas: --no-peers and --json have no place with --from")
+            raise InputError("topomap atlas: --no-peers and --json cannot be used with --from")
         data = read_atlas(args.given)
         with output(args.output) as out:
             return tell(args, out, Atlas(data, data["fault"]), True)
     worlds = list(_worlds(args.file))
     if not worlds:
-        raise InputError(f"{args.file}: there is no world in it")
+        raise InputError(f"{args.file}: it has no worlds")
     with output(args.output) as out:
         with heeding(args.timeout) as watch:
             made = atlas_under(
@@ -128,7 +133,7 @@ def _worlds(file: str) -> "Iterator[World]":
                 environment = environment.signed(args.signs, args.seed or 0)
             environment, start = start_of(environment, args.start, args.facing)
         except SystemExit:
-            raise InputError(f"{file}:{line}: --help has no place in a list") from None
+            raise InputError(f"{file}:{line}: --help cannot be used in a list") from None
         except InputError as error:
             raise InputError(f"{file}:{line}: {error}") from None
         yield shlex.join(call), _name(call), environment, start

@@ -67,11 +67,11 @@ def known(args: argparse.Namespace, experience: "Experience") -> "Experience":
     seen = experience if horizon is None else experience.cut(horizon)
     told = assumed(name, seen, tuple(args.assume))
     if told.assumed and args.command in ONLY_PAIRS:
-        raise InputError(f"{name}: here it can be same(T,U) or not same(T,U) only")
+        raise InputError(f"{name}: here it can only be same(T,U) or not same(T,U)")
     if told.assumed and getattr(args, "encoding", "work") == "paper":
-        raise InputError(f"{name}: with --encoding paper it can be same(T,U) or not same(T,U) only")
+        raise InputError(f"{name}: with --encoding paper it can only be same(T,U) or not same(T,U)")
     if told.assumed and getattr(args, "by", "auto") == "search":
-        raise InputError(f"{name}: with --by search it can be same(T,U) or not same(T,U) only")
+        raise InputError(f"{name}: with --by search it can only be same(T,U) or not same(T,U)")
     return told
 
 
@@ -84,7 +84,7 @@ def parts_of(args: argparse.Namespace, of: Iterable[str] = PARTS) -> dict[str, b
     parts = {part: True for part in of if getattr(args, part, False)}
     if getattr(args, "encoding", None) == "paper" and (others := unstated(parts.keys())):
         name = f"--{others[0].replace('_', '-')}"
-        raise InputError(f"topomap {args.command}: --encoding paper does not state {name}")
+        raise InputError(f"topomap {args.command}: --encoding paper has no rules for {name}")
     return parts
 
 

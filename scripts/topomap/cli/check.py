@@ -45,7 +45,7 @@ def add(group: Any) -> None:
     made.add_argument(
         "--all",
         action="store_true",
-        help="tell of each map which axioms and defaults it breaks, and name its exceptions to "
+        help="report for each map which axioms and defaults it breaks, and name its exceptions to "
         "consistent boundaries; a map is then wrong only if it breaks what is demanded "
         "here, or what the file says of it; this includes the path axiom",
     )

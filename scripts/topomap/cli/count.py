@@ -53,7 +53,7 @@ def run(args: argparse.Namespace) -> int:
     experience = experience_of(args, args.instance)
     if args.merging and (args.circumscribe or args.dask or (args.jobs or 1) > 1 or args.resume):
         other = "--circumscribe, --jobs, --dask or --resume"
-        raise InputError(f"topomap count: --merging: not with {other}")
+        raise InputError(f"topomap count: --merging cannot be combined with {other}")
     with (
         crew_of(args) as crew,
         Journal(args.output, run_of(args, experience), args.resume) as journal,

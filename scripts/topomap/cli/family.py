@@ -48,10 +48,10 @@ def run(args: argparse.Namespace) -> int:
             with contextlib.redirect_stdout(None):
                 parsed = parse(["generate", *call])
             if parsed.output or parsed.truth or parsed.json:
-                raise InputError("-o, --truth and --json have no place in a family")
+                raise InputError("-o, --truth and --json cannot be used in a family")
             made = instance_of(parsed)
         except SystemExit:
-            raise InputError(f"{args.file}:{line}: --help has no place in a family") from None
+            raise InputError(f"{args.file}:{line}: --help cannot be used in a family") from None
         except InputError as error:
             raise InputError(f"{args.file}:{line}: {error}") from None
         if made.name in calls:

@@ -31,7 +31,7 @@ lines: the facts of a step, as generate writes them: turn(1,0). view(1,0). view(
   or JSON: {"slots": 4, "view": [0, 1]} first, then {"turn": 2, "view": [0, 2]}; each may have
   "landmarks": ["a"], and "drop", "pick" or "marker": true, or the name of a marker; "compass": 2,
   "shift": [3, -1], "length": 12, "straight": [[0, 5]], the pairs of gateways that are on one
-  path (told from the first line on, or not at all), and "same": [4] or "apart": [4], the
+  path (given from the first line on, or not at all), and "same": [4] or "apart": [4], the
   earlier steps after which the agent was at this place, or at another one. In the place of a
   turn there may be "start": true, where a new log begins, or "look": true, a second look.
   undo. or {"undo": 2} takes the last steps back. Facts that a line adds to the last step amend it.
@@ -65,7 +65,8 @@ what is certain: new(T), the place where the agent is after step T was not visit
         type=number(int, 1),
         default=MOST_COUNTED,
         metavar="N",
-        help="if there are more than N hypotheses, say only that (default: %(default)s)",
+        help="if there are more than N hypotheses, print only that there are "
+        "(default: %(default)s)",
     )
     add_measured(made)
     add_tolerance(made)

@@ -55,8 +55,8 @@ def add(group: Any) -> None:
         type=number(float, 0, 180),
         metavar="DEGREES",
         help="if bearings count from north: a way bends by at most DEGREES degrees from one "
-        "place to the next, which tells the exit by which one arrived where the log does "
-        "not (default: nothing is known about bends)",
+        "place to the next, which determines the exit by which one arrived if the log does "
+        "not name it (default: nothing is known about bends)",
     )
     add_straight(add, "; if no number of slots fits the bearings, the limit is chosen")
     add(

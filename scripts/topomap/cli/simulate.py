@@ -76,7 +76,7 @@ def add(group: Any) -> None:
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     add = listed.add_argument
-    add("file", metavar="FILE", help="a file, each line of which is one environment")
+    add("file", metavar="FILE", help="a file in which each line is one environment")
     add(
         "--timeout",
         type=number(float, 0.001),
@@ -175,10 +175,10 @@ def _calls(args: argparse.Namespace) -> "Iterator[tuple[str, argparse.Namespace,
             with contextlib.redirect_stdout(None):
                 parsed = parse(["simulate", *call])
             if parsed.kind == "list" or parsed.output or parsed.instance or parsed.json:
-                raise InputError("list, -o, --instance and --json have no place in a list")
+                raise InputError("list, -o, --instance and --json cannot be used in a list")
             environment = _environment(parsed)
         except SystemExit:
-            raise InputError(f"{args.file}:{line}: --help has no place in a list") from None
+            raise InputError(f"{args.file}:{line}: --help cannot be used in a list") from None
         except InputError as error:
             raise InputError(f"{args.file}:{line}: {error}") from None
         yield " ".join(call), parsed, environment

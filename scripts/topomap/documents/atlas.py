@@ -18,51 +18,53 @@ WIDTH = 116
 HEAD = """\
 # An atlas of aliasing
 
-How many maps explain what an explorer saw? This page counts them, after each step of two walks in
-each of {worlds} worlds. `topomap atlas` wrote it from [atlas.json](atlas.json), which has all
-figures; `make atlas` counts again.
+How many maps explain what an explorer saw? This page gives their number after each step of two
+walks in each of {worlds} worlds. `topomap atlas` wrote it from [atlas.json](atlas.json), which
+has all figures; `make atlas` counts again.
 
-The *tour* goes every way, comes back to where it began, and is as short as such a walk can be.
-The *random walk* goes on until it has gone every way, but it ends after {steps} steps at most
-(seed {seed}). The maps are counted four times:
+The *tour* goes along every way, comes back to where it began, and is as short as such a walk can
+be. The *random walk* goes on until it has gone along every way, but it ends after {steps} steps
+at most (seed {seed}). The maps are counted four times:
 
-- **all**: the maps that explain what was seen in turns, that is, counted from the gateway where
-  the agent arrived;
-- **planar**: those of them that are planar;
+- **all**: the maps that explain what the agent saw, with directions given as *turns*, that is,
+  counted from the gateway where it arrived;
+- **planar**: those of these maps that are planar;
 - **compass**: the maps that explain the same walk if the agent also has an exact compass;
 - **closed**: those of the first kind that have no pending gateway.
 
-A count is exact. It stops where it is told that there are more than {most} maps, or where the
-{seconds} seconds are over that each part of the work may take; then the page names the step. The
-closed maps at the end are looked for again by themselves, where the count of all maps stopped.
+Each count is exact. A count stops at the first step after which there are more than {most} maps,
+or when the {seconds} seconds that each part of the work may take are over; the page then names
+the step. Where the count of all maps stopped, the closed maps at the end are looked for
+separately.
 """
 LEFT = """\
-## How many maps live at the end of the walk
+## How many maps remain at the end of the walk
 
 {table}
 """
 SETTLING = """\
-## Which further walk leaves the real map alone
+## Which further walk leaves only the real map
 
-*One since* is the step from which on there is one map, to the end of the walk. *Further walk* is
-the length of the shortest walk in the real world, from the end of the first walk on, that refutes
-each map that lives there but the real one. A map is refuted if no map that comes of it explains
-the longer walk, too. So after the further walk there is one map, if the real map is closed. (Of
-the closed maps, those are refuted that are closed already; others may become closed on the way.)
+*One since* is the step from which on there is exactly one map, until the end of the walk.
+*Further walk* is the length of the shortest walk in the real world, from the end of the first
+walk on, that refutes every remaining map except the real one. A map is refuted if no map that
+extends it explains the longer walk. So after the further walk there is one map, if the real map
+is closed. (Of the closed maps, the further walk refutes those that are closed before it begins;
+others may become closed during it.)
 
-- `none (3 of 4)` is a proof: 3 of the 4 other maps can be refuted by no walk, whatever its
+- `none (3 of 4)` is a proof: 3 of the 4 other maps cannot be refuted by any walk, whatever its
   length.
-- If there are more than {living} other maps, {living} of them are tried. If one of these can be
-  refuted by no walk, that is a proof, too: `none (1 of 100 tried)`. If not, the cell has a lower
-  bound, and then the length of a walk that refutes those which were tried.
-- `real map open` says that the real map has pending gateways as yet, so it is none of the closed
-  maps; or it is not one of the maps of the kind at all.
+- If there are more than {living} other maps, {living} of them are tried. If one of these cannot
+  be refuted by any walk, that is a proof, too: `none (1 of 100 tried)`. Otherwise the cell has a
+  lower bound, and then the length of a walk that refutes the maps that were tried.
+- `real map open` says that the real map still has pending gateways, so it is not one of the
+  closed maps; or that it is not one of the maps of the kind at all.
 
-In a world with a cycle, once a walk has gone all ways of the cycle, there is no further walk that
-leaves one map of the first three kinds. For there is a map in which each step along a new way
-came to a new place. This map is a tree, so it is planar and keeps the path axiom. Wherever the
-walk goes on, the next new way can lead to one more new place, where that is seen which the agent
-sees.
+In a world with a cycle, once a walk has gone along all ways of the cycle, no further walk leaves
+exactly one map of any of the first three kinds. The reason is that there is a map in which each
+step along a new way came to a new place. This map is a tree, so it is planar and keeps the path
+axiom. Wherever the walk goes on, the next new way can lead to one more new place in this map,
+with the view that the agent sees there.
 
 {table}
 """
@@ -71,48 +73,51 @@ PREFERRED = """\
 
 The best maps are the closed ones that have the fewest exceptions to consistent boundaries, then
 the fewest paths, then the fewest places. If no map is closed, they are the best so far, in which
-gateways may be pending. `one of 2` says that the real map and another one are best. If it is not
-among the best, the cell has what they have of these three, and then what the real map has.
+gateways may be pending. `one of 2` says that the real map and one other map are best. If the real
+map is not among the best, the cell has these three numbers of the best maps, and then those of
+the real map.
 
 {table}
 
 {sums}
 """
 PEERS = """\
-## Beside it: learning an automaton without reset
+## Compared with learning an automaton without reset
 
 [AALpy](https://github.com/DES-Lab/AALpy) {aalpy} learns automata. Its algorithm hW needs no
 reset, so it can explore a world as a robot does. Here it explores the same worlds. An input is a
-turn. If there is a gateway, the agent travels through it, and the output is what is seen beyond;
-if not, the agent stays where it is. With a compass, the output also has the direction of the
-gateway stood at.
+turn. If there is a gateway in this direction, the agent travels through it, and the output is
+what the agent sees beyond; if not, the agent stays where it is. With a compass, the output also
+has the direction of the gateway where the agent stands.
 
-A state of the world is a dstate: a place, and the gateway where the agent stands. *Smallest* is
-the number of classes of dstates that no walk tells apart: an automaton that predicts each walk
-rightly has no fewer states. *Learned* is the number of states of the automaton with which the
-algorithm ended, and *moves* is how many times it travelled until then. It ends when {tested}
-random inputs do not refute its automaton (AALpy's `RandomhWOracle`; seed {seed}). The automaton
-was then compared with the world, and is marked if it predicts something wrong.
+A state of the world is a dstate: a place, and the gateway where the agent stands. Dstates that no
+walk tells apart form a class. *Smallest* is the number of these classes: an automaton that
+predicts each walk rightly has no fewer states. *Learned* is the number of states of the automaton
+with which the algorithm ended, and *moves* is the number of times that the agent travelled until
+then. The algorithm ends when {tested} random inputs do not refute its automaton (AALpy's
+`RandomhWOracle`; seed {seed}). The automaton was then compared with the world; it is marked if it
+predicts something wrongly.
 
 {table}
 
 {sums}
 
-In turns, a symmetric world looks the same from several sides. The smallest automaton has one
-state for dstates that a symmetry exchanges. It predicts everything rightly, but it is not the
-map, as it takes several places for one. (On minimal automata see section V of the paper.) Such a
-learner gives one automaton, and does not tell how many maps explain its walk.
+With turns alone, a symmetric world looks the same from several sides. The smallest automaton has
+one state for all dstates that a symmetry exchanges. It predicts everything rightly, but it is not
+the map, as it takes several places for one. (Section V of the paper discusses minimal automata.)
+Such a learner gives one automaton, and does not say how many maps explain its walk.
 """
 NO_PEERS = """\
-## Beside it: learning an automaton without reset
+## Compared with learning an automaton without reset
 
-These columns are missing, as AALpy was not installed when the atlas was made, or was not asked.
-It comes with the extra `peers`, which `make atlas` installs.
+These columns are missing, as AALpy was not installed when the atlas was made, or was not asked
+for. It comes with the extra `peers`, which `make atlas` installs.
 """
 STEPS = """\
 ## Step by step
 
-The number of maps after each step, from step 0. `1 x12` stands for 1, twelve times.
+These are the numbers of maps after each step, from step 0. `1 x12` stands for the number 1, twelve
+times in a row.
 
 {blocks}
 """
@@ -124,16 +129,16 @@ CUT = """\
 
 
 def read_atlas(path: str | Path) -> dict[str, Any]:
-    """The JSON of an atlas. Raises InputError, one line, if a file is none."""
+    """The JSON of an atlas. Raises InputError, one line, if a file is not an atlas."""
     try:
         data = json.loads(read_text(path))
     except (ValueError, RecursionError):
-        raise InputError(f"{path}: no JSON") from None
+        raise InputError(f"{path}: not JSON") from None
     formats.demand(path, data)
     try:
         list(page(data))
     except (AttributeError, IndexError, KeyError, TypeError, ValueError):
-        raise InputError(f"{path}: no atlas, as topomap atlas --json writes it") from None
+        raise InputError(f"{path}: not an atlas as topomap atlas --json writes it") from None
     return dict(data)
 
 
@@ -179,7 +184,7 @@ def page(data: dict[str, Any]) -> Iterator[str]:
 
 
 def _table(head: Sequence[str], rows: Iterator[Sequence[Any]]) -> str:
-    """A table, as pages have it; what is a number is at the right."""
+    """A table, as pages have it."""
     body = [[str(cell) for cell in row] for row in rows]
     lines = [head, ["---"] * len(head), *body]
     return "\n".join("| " + " | ".join(line) + " |" for line in lines)
@@ -242,7 +247,7 @@ def _since(counted: dict[str, Any], what: str) -> str:
 
 
 def _further(told: dict[str, Any]) -> str:
-    """The further walk that leaves the real map alone, in a few words."""
+    """The further walk that leaves only the real map, in a few words."""
     kind, others = told["kind"], told["others"]
     if kind == "one":
         return "0 steps"
@@ -295,7 +300,7 @@ def _preferred_sums(rows: Sequence[dict[str, Any]]) -> str:
         among = sum(one["truth"] and one["maps"] > 1 for one in known)
         lines.append(
             f"{kind}: after the tour, the real map alone is best in {alone} worlds, it is one of "
-            f"several best maps in {among}, and it is none of them in "
+            f"several best maps in {among}, and it is not among the best maps in "
             f"{len(known) - alone - among}. In {len(told) - len(known)} worlds this is open."
         )
     return _items(lines)
@@ -333,7 +338,7 @@ WHY_LEARNED = {"all alike": "not begun: all looked alike"}
 
 
 def _peers_sums(rows: Sequence[dict[str, Any]]) -> str:
-    """What the learner came to in all."""
+    """What the learner reached in all worlds."""
     lines = []
     for how in "turns", "compass":
         told = [(row["name"], row["peer"][how]) for row in rows]
@@ -346,11 +351,11 @@ def _peers_sums(rows: Sequence[dict[str, Any]]) -> str:
             for name, one in ended
             if 4 * one["states"] == one["dstates"]
         ]
-        quarter = f" It ended at a quarter of the dstates in {len(few)}: {', '.join(few)}."
+        quarter = f" In {len(few)} it has a quarter as many states as dstates: {', '.join(few)}."
         lines.append(
-            f"{how}: it ended in {len(ended)} of {len(told)} worlds, in {right} of them with an "
-            f"automaton that predicts everything rightly. In {least} it has as many states as the "
-            f"smallest one, and in {whole} a state for each dstate." + quarter * bool(few)
+            f"{how}: the algorithm ended in {len(ended)} of {len(told)} worlds, in {right} of them "
+            f"with an automaton that predicts everything rightly. In {least} worlds its automaton "
+            f"has as many states as the smallest one, and in {whole} a state for each dstate." + quarter * bool(few)
         )
     return _items(lines)
 
@@ -372,13 +377,13 @@ def _steps(rows: Sequence[dict[str, Any]]) -> Iterator[str]:
 
 
 def _runs(numbers: Sequence[int]) -> str:
-    """Numbers in a row, those that are equal together."""
+    """Numbers in a row; equal neighbours are written once, with their number."""
     runs = ((number, len([*same])) for number, same in groupby(numbers))
     return ", ".join(f"{number:,}" + (f" x{many}" if many > 1 else "") for number, many in runs)
 
 
 def _cuts(rows: Sequence[dict[str, Any]]) -> Iterator[str]:
-    """What is not told in full, and why."""
+    """What was not counted in full, and why."""
     for row, walk in _walks(rows):
         where = f"{row['name']}, {WALKS[walk['walk']]}"
         for kind in KNOWLEDGE:

@@ -120,7 +120,7 @@ def documents(where: str, data: Any) -> list[Document]:
         return [_of_clingo(where, data)]
     results = data["results"] if isinstance(data, dict) and "results" in data else [data]
     if not isinstance(results, list):
-        raise InputError(f"{where}: results: no list")
+        raise InputError(f"{where}: results: not a list")
     many = len(results) > 1
     return [
         document(f"{where}: result {number}" if many else where, one)
@@ -155,7 +155,7 @@ def document(where: str, data: Any) -> Document:
     if kind == UNPROVED and claims.get("proved"):
         raise InputError(f"{where}: proved and kind contradict each other")
     if not data["maps"] and claims.get("count"):
-        raise InputError(f"{where}: count is {claims['count']}, there are no maps")
+        raise InputError(f"{where}: count is {claims['count']}, but there are no maps")
     for number, entry in enumerate(data["maps"], 1):
         if not isinstance(entry, dict) or not _is_at(entry.get("at")):
             raise InputError(f"{where}: map {number}: at is not a list [[T,P,S], ...] of numbers")

@@ -32,7 +32,7 @@ SHORTEST = 0.4  # the least length of a link in a drawing by the compass
 NARROW = 0.05  # the least distance between lines in it
 DISTORTED = 0.5  # the largest difference from known positions in a terminal
 QUARTER = [np.array([[x, y], [-y, x]], float) for x, y in ((1, 0), (0, 1), (-1, 0), (0, -1))]
-ELSEWHERE = "some places are drawn elsewhere than they are"
+ELSEWHERE = "some places are not drawn at their positions"
 # The number of other drawings that are tried, and lengths of links in them.
 TRIES, LENGTHS = 150, (1, 1, 1, 2, 3)
 

@@ -62,8 +62,8 @@ def likeness(
     if len(named) >= ENOUGH:
         at = {place: plan.points[there] for place, there in named.items()}
         told = f"{len(named)} places are found by their names, and the others put between them"
-        return Likeness(_between(world, at), f"it is no part of the world: {told}")
-    return Likeness(None, "it is no part of the world, as its links tell, and names do not help")
+        return Likeness(_between(world, at), f"it is not a part of the world: {told}")
+    return Likeness(None, "it is not a part of the world, as its links tell, and names do not help")
 
 
 def _unlike(where: Where, known: Where) -> float:

@@ -124,7 +124,7 @@ def _graphml(environment: Environment) -> str:
     graph = _graph(environment)
     for text in (*graph, *environment.names.values()):
         if _NO_XML.search(text):
-            raise InputError(f"{environment.name}: XML has no place for the name {printable(text)}")
+            raise InputError(f"{environment.name}: XML cannot hold the name {printable(text)}")
     for attributes in (graph.graph, *graph.nodes.values(), *graph.edges.values()):
         attributes.update({k: json.dumps(attributes[k]) for k in LISTS if k in attributes})
     return "\n".join(nx.generate_graphml(graph, named_key_ids=True)) + "\n"
@@ -139,7 +139,7 @@ def _tmap2(environment: Environment) -> str:
     world, points = environment.map, environment.points
     if lost := [place for place in world.stars if place not in points]:
         name = printable(label(lost[0]))
-        raise InputError(f"{environment.name}: it is not told where place {name} is")
+        raise InputError(f"{environment.name}: the position of place {name} is not known")
     nodes = [
         Node(
             label(place),

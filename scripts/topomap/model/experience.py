@@ -177,7 +177,7 @@ class Experience:
             )
         if not len(done) + 1 == len(seen) == len(signs):
             told = f"{len(seen)} views, {len(done)} turns, landmarks after {len(signs)} steps"
-            raise ValueError(f"{told}: of n turns there are n + 1 views")
+            raise ValueError(f"{told}: n turns need n + 1 views")
         marks: list[frozenset[int]] = []
         named: list[Any] = []
         for kind, name, of in zip(
@@ -198,7 +198,7 @@ class Experience:
         still = {step for step, turn in enumerate(done, 1) if turn is None}
         if rests[0] & rests[1] or rests[0] | rests[1] != still:
             raise ValueError(
-                "turns: None is the turn of the steps of starts or looks, and no other"
+                "turns: the turn is None at the steps of starts and looks, and only there"
             )
         north = _each("compass", compass, many, integer)
         moved = _each("shifts", shifts, many - 1, _shift)

@@ -270,7 +270,7 @@ class Facts:
         rests = {name: self.rests[name][step] for name in RESTS if step in self.rests[name]}
         if rests and step == 0:
             for name, line in rests.items():
-                said = "it is the start already" if name == "start" else "there is no earlier look"
+                said = "it is already the start" if name == "start" else "there is no earlier look"
                 yield Fault(said, line, step)
         elif rests and turns:
             said = "it has a turn, but begins a log" if "start" in rests else "a look has no turn"
@@ -312,7 +312,8 @@ class Facts:
                 yield Fault(said, min(told.values()), step)
             rests = any(step in self.rests[kind] for kind in RESTS)
             if told and rests and name == "length":
-                yield Fault("there is a length, but it is not a travel", min(told.values()), step)
+                said = "there is a length, but it is not a travel step"
+                yield Fault(said, min(told.values()), step)
             if len(told) > 1:
                 yield Fault(f"more than one {what}", sorted(told.values())[1], step)
         for (slot,), line in self.known["compass"].get(step, {}).items():
@@ -325,7 +326,7 @@ class Facts:
             if length > most:
                 yield Fault(_too_long(length, most, self.stretch), line, step)
         if told_apart := self.pairs["apart"].get((step, step)):
-            yield Fault("it is told to be of another place than itself", told_apart, step)
+            yield Fault("it is said to be at another place than itself", told_apart, step)
 
     def _pair_faults(self, step: int, slots: int | None, noisy: bool) -> Iterator[Fault]:
         """Find what is wrong with the pairs of gateways that are told of a step."""

@@ -47,7 +47,7 @@ def judged(path: str, drift: int = DRIFT, stretch: int = STRETCH) -> dict[str, A
     if len(faults) > MOST:
         more = f"only the first {MOST:,} are listed"
     elif facts.unread:
-        more = "what is missing can be told once every statement is a fact"
+        more = "what is missing can be said only when every statement is a fact"
     return told | {
         "faults": [_json(fault, "fault") for fault in faults[:MOST]],
         "more_faults": more,

@@ -170,7 +170,7 @@ class Explanation:
     def _sum(self) -> str:
         many = len(self.reasons)
         if not self.minimal:
-            enough = f"{many} {words.plural(many, 'reason')}: enough, but some may be spared"
+            enough = f"{many} {words.plural(many, 'reason')}: enough, but some may not be needed"
             return enough if many else "the reasons are not found yet"
         if not many:
             return "it is so whatever the map: no rule is needed"

@@ -130,7 +130,7 @@ def plan(
     ``fault`` says so.
     """
     if any(standing.world.slots != slots for standing in among):
-        raise ValueError("maps of other slots")
+        raise ValueError("maps with another number of slots")
     if len({sight(one, one.dstate, one.marker) for one in among}) != 1:
         raise ValueError("no maps, or what is seen now differs")
     planner = _Planner(slots, among, watch, marker, steps)

@@ -31,10 +31,10 @@ class Log:
         try:
             self._file = os.open(self.path, flags, 0o666)
             if not Path(self.path).is_file():
-                raise InputError(f"{self.path}: no regular file")
+                raise InputError(f"{self.path}: not a regular file")
             fcntl.flock(self._file, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError:
-            raise InputError(f"{self.path}: another follower has it") from None
+            raise InputError(f"{self.path}: another topomap follow is writing it") from None
         except FileNotFoundError as error:
             if make or not Path(self.path).parent.is_dir():
                 raise of_file(self.path, error) from None
@@ -52,7 +52,7 @@ class Log:
             whole = 0
             for number, line in enumerate(file, 1):
                 if not line.endswith(b"\n"):
-                    say(f"{self.path}:{number}: torn, dropped")
+                    say(f"{self.path}:{number}: an incomplete line, dropped")
                     os.ftruncate(self._file, whole)
                     return
                 whole += len(line)

@@ -49,15 +49,21 @@ KNOWN = ("compass", "odometry", "length", "same", "apart")  # what is known besi
 FIRST = RULE_NAMES.index("bound")  # the rules before it hold of every map; the others are demands
 # The full sentence of a whole rule, by its text in RULES.
 WHOLE = {
-    "odometry": "visits that are too far apart by their odometry are of two places",
-    "gateway unification": "who leaves by the gateway where a step arrived goes back on its link",
-    "schema": "a gateway has one link, and none with itself",
+    "odometry": "two visits that are too far apart by odometry are at different places",
+    "gateway unification": (
+        "a step that leaves by the gateway at which an earlier step arrived goes back "
+        "along its link"
+    ),
+    "schema": "a gateway has only one link, and is not linked to itself",
     "path axiom": "no place is on a path twice, and no path is circular",
     "bound": "there are not too many places",
     "planarity": "the map can be drawn without crossings",
-    "boundary": "paths meet once at most, hold no place twice, and have each place on one side",
-    "perpendicularity": "paths meet once at most, and no three of them make a triangle",
-    "travelled": "each path holds two places or more",
+    "boundary": (
+        "two paths meet at most once, no path contains a place twice, and no place is on both "
+        "sides of a path"
+    ),
+    "perpendicularity": "two paths meet at most once, and no three paths make a triangle",
+    "travelled": "each path contains at least two places",
     "closed": "each gateway has a link",
 }
 BY_STEP = ("view", "compass", "length")  # what is compared between two steps
@@ -264,13 +270,17 @@ class Broken:
         if kind == "assumed":
             return told_assumed(self.experience, arguments[0])
         if kind == "look":
-            words = f"after the second look of step {arguments[0]} the agent would stand elsewhere"
+            words = (
+                f"after the second look of step {arguments[0]} the agent would not stand where it "
+                "stood before"
+            )
             return Told(words, (arguments[0] - 1, arguments[0]))
         if kind == "planar":
             steps, places = self.cycle(arguments[0])
             words = (
                 f"the link of step {arguments[1]} would join a gateway inside the cycle of "
-                f"{_named('step', steps)}, round by {_named('place', places)}, to one outside"
+                f"{_named('step', steps)}, which passes {_named('place', places)}, "
+                "to a gateway outside it"
             )
             return Told(words, (arguments[1], *steps), tuple(steps), tuple(places))
         if kind == "euler":
@@ -278,7 +288,7 @@ class Broken:
             return Told(f"|V| - |E| + faces would be {total}, not 2", ())
         if kind == "bound":
             places = sorted({place for place, _ in self.at})
-            words = f"it would take {number(len(places), 'place')}, first visited after "
+            words = f"there would be {number(len(places), 'place')}, first visited after "
             return Told(words + _named("step", places), tuple(places))
         if kind in ("closed", "travelled"):
             return told_gateway(kind, *arguments)
@@ -287,7 +297,10 @@ class Broken:
         if kind == "sides":
             *path, place = arguments
             named = "of step {}" if len(path) == 1 else "through slot {1} of place {0}"
-            words = f"place {place} would be both right and left of the path {named.format(*path)}"
+            words = (
+                f"place {place} would be both to the right and to the left of the path "
+                f"{named.format(*path)}"
+            )
             return Told(words, (path[0], place))
         meets = [_named("place", sorted({p for a, b, p in common if {a, b} == {c, d}}))
                  for c, d in _pairs(arguments)]  # fmt: skip
@@ -303,13 +316,13 @@ class Broken:
         end, arrival = self.at[first], self.at[second]
         if kind == "schema" and out == other:
             words = (
-                f"steps {first} and {second} would leave by one gateway, {gid(out)}, and arrive "
-                f"at two, {gid(end)} and {gid(arrival)}"
+                f"steps {first} and {second} would leave by the same gateway, {gid(out)}, and "
+                f"arrive at two gateways, {gid(end)} and {gid(arrival)}"
             )
         elif kind == "schema":
             words = (
-                f"steps {first} and {second} would arrive at one gateway, {gid(end)}, by two, "
-                f"{gid(out)} and {gid(other)}"
+                f"steps {first} and {second} would arrive at the same gateway, {gid(end)}, "
+                f"from two gateways, {gid(out)} and {gid(other)}"
             )
         elif other == end:
             words = (
@@ -339,9 +352,9 @@ class Broken:
         if kind == "circular":
             end = "be circular"
         elif kind == "twice":
-            end = f"hold place {places[0]} twice, after steps {walk[0]} and {walk[-1]}"
+            end = f"contain place {places[0]} twice, after steps {walk[0]} and {walk[-1]}"
         elif kind == "place_twice":
-            end = f"hold place {places[0]} twice"
+            end = f"contain place {places[0]} twice"
         else:
             end = f"cross itself at place {places[0]}"
         words = f"the path through {_named('place', places)} ({_named('step', walk)}) would {end}"
@@ -401,10 +414,10 @@ def told_plainly(kind: str, arguments: Sequence[int]) -> Told:
     """Put a reason into words without a map that breaks it."""
     steps = _named("step", arguments)
     words = {
-        "unification": f"{steps} go by one link, there and back",
-        "schema": f"{steps} go by one link",
+        "unification": f"{steps} go along one link, there and back",
+        "schema": f"{steps} go along one link",
         "itself": f"{steps} does not arrive at the gateway by which it left",
-        "place_twice": f"the path of {steps} holds no place twice",
+        "place_twice": f"the path of {steps} contains no place twice",
         "twice": f"{steps} end at different places, as they are on one path",
         "crossed": f"the path of {steps} does not cross itself",
         "circular": f"the path of {steps} is not circular",
@@ -412,8 +425,8 @@ def told_plainly(kind: str, arguments: Sequence[int]) -> Told:
         "euler": "|V| - |E| + faces is 2",
         "bound": "there are not too many places",
         "look": f"the second look of {steps} is from where the agent stands",
-        "boundary": f"the paths of {steps} meet once at most",
-        "perpendicular": f"the paths of {steps} meet once at most",
+        "boundary": f"the paths of {steps} meet at most once",
+        "perpendicular": f"the paths of {steps} meet at most once",
         "triangle": f"the paths of {steps} do not meet pairwise",
     }
     return Told(words.get(kind, kind), tuple(arguments))
@@ -423,7 +436,7 @@ def told_gateway(kind: str, place: int, slot: int) -> Told:
     """Describe a gateway that has no link."""
     if kind == "closed":
         return Told(f"gateway {place}.{slot} would be pending", (place,))
-    words = f"the path through slot {slot} of place {place} would hold no other place"
+    words = f"the path through slot {slot} of place {place} would contain no other place"
     return Told(words, (place,))
 
 
@@ -440,17 +453,17 @@ def told_views(
     if signs[0] != signs[1]:
         fault = "the landmarks are not the same"
     elif not turns and experience.straight:
-        fault = "no turn of one gives the other, with the same gateways on one path"
+        fault = "no turn of one view gives the other, with the same gateways on one path"
     elif not turns:
-        fault = "no turn of one gives the other"
+        fault = "no turn of one view gives the other"
         fault += f", within {number(experience.tolerance, 'slot')}" * bool(experience.tolerance)
     elif at is None:
-        fault = f"one gives the other only if turned by {' or '.join(map(str, turns))}"
+        fault = f"one view gives the other only if turned by {' or '.join(map(str, turns))}"
     else:
         turn = (at[step][1] - at[visit][1]) % slots
         fault = (
-            f"the first one, turned by {turn} as it would be, does not give the other "
-            f"(it does turned by {' or '.join(map(str, turns))})"
+            f"the first view, turned by {turn} as it would be, does not give the second "
+            f"(it does if turned by {' or '.join(map(str, turns))})"
         )
     texts = [_seen(experience, one, any(signs)) for one in (step, visit)]
     words = (
@@ -482,14 +495,14 @@ def told_known(
         )
         if at is not None:
             turn = (at[other][1] - at[one][1]) % experience.slots
-            words += f"; from the one to the other the agent would turn by {turn}"
+            words += f"; from the first to the second the agent would turn by {turn}"
     elif kind == "odometry":
         words = _far(experience, one, other)
     elif kind == "length":
         lengths = [experience.lengths[step - 1] for step in steps]
         words = (
-            f"steps {one} and {other} would go by one link, and are {lengths[0]} and {lengths[1]} "
-            f"long; on one link lengths differ by {experience.stretch} % at most"
+            f"steps {one} and {other} would go along one link, and are {lengths[0]} and "
+            f"{lengths[1]} long; lengths of one link differ by {experience.stretch} % at most"
         )
     else:
         places = "one place" if kind == "same" else "two places"
@@ -514,7 +527,7 @@ def _far(experience: Experience, one: int, other: int) -> str:
     wrong = Fraction(experience.drift * way, 100)
     return (
         f"step {other} is at least {_decimal(apart - wrong)} units from step {one} by its "
-        f"odometry: {apart} were measured, on a way of {way}, wrong by {experience.drift} % at most"
+        f"odometry: {apart} were measured on a way of {way}, wrong by {experience.drift} % at most"
     )
 
 

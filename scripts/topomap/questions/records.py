@@ -177,11 +177,11 @@ class Record:
             LineFault: It is impossible.
         """
         if self.slots is not None:
-            raise LineFault("slots are told twice")
+            raise LineFault("slots are given twice")
         if fault := slots_fault(slots):
             raise LineFault(fault)
         if self.last is not None:
-            raise LineFault("slots are to be told before the first step")
+            raise LineFault("slots must be given before the first step")
         return replace(self, slots=slots)
 
     def _with_thing(self, step: int, kind: str, name: str) -> "Record":
@@ -196,7 +196,7 @@ class Record:
         assert record.last is not None
         known = record.last
         if step == 0:
-            said = "it is the start already" if kind == "start" else "there is no earlier look"
+            said = "it is already the start" if kind == "start" else "there is no earlier look"
             raise LineFault(f"step 0: {said}")
         if kind == "start" and self.one_log:
             raise LineFault(f"step {step}: a new log is not followed if maps are to be planar")
@@ -204,7 +204,7 @@ class Record:
             said = "it has a turn, but begins a log" if kind == "start" else "a look has no turn"
             raise LineFault(f"step {step}: {said}")
         if known.length is not None:
-            raise LineFault(f"step {step}: there is a length, but it is not a travel")
+            raise LineFault(f"step {step}: there is a length, but it is not a travel step")
         if (kind == "start" and known.look) or (kind == "look" and known.start):
             raise LineFault(f"step {step}: it begins a log, and is a second look")
         return record._with_last(**{kind: True})
@@ -222,7 +222,7 @@ class Record:
         if name != "compass" and step == 0:
             raise LineFault(f"step 0: there is a {name}, but step 1 is the first that moves")
         if name == "length" and (known.start or known.look):
-            raise LineFault(f"step {step}: there is a length, but it is not a travel")
+            raise LineFault(f"step {step}: there is a length, but it is not a travel step")
         if name == "length" and value <= 0:
             raise LineFault(f"step {step}: length {value} is not above 0")
         return record._with_last(**{name: value})
@@ -234,7 +234,7 @@ class Record:
             raise LineFault(f"step {earlier}: steps are numbered from 0")
         record = self._seen(step)
         if earlier == step and name == "apart":
-            raise LineFault(f"step {step}: it is told to be of another place than itself")
+            raise LineFault(f"step {step}: it is said to be at another place than itself")
         return record._with_last(**{name: getattr(record.last, name) | {earlier}})
 
     def _on_one_path(self, step: int, one: int, other: int) -> "Record":
@@ -245,7 +245,7 @@ class Record:
         record = self._seen(step)
         assert record.slots is not None
         if record.done and record.done[0].straight is None:
-            said = "which gateways are on one path is told from step 0 on, or not at all"
+            said = "the gateways that are on one path must be given from step 0 on, or not at all"
             raise LineFault(f"step {step}: {said}")
         assert record.last is not None
         known = record.last
@@ -288,7 +288,7 @@ class Record:
             if known.turn not in (None, turn):
                 raise LineFault(f"step {step}: more than one turn")
             if known.start or known.look:
-                raise LineFault(f"step {step}: it has a turn, but is not a travel")
+                raise LineFault(f"step {step}: it has a turn, but is not a travel step")
             before = self.done[step - 1] if step == last or self.last is None else self.last
             if turn not in before.view:
                 raise LineFault(f"step {step}: turn {turn}: no gateway there after step {step - 1}")
@@ -441,7 +441,7 @@ def _parsed(text: str) -> dict[str, Any]:
     try:
         data = json.loads(text)
     except (ValueError, RecursionError):
-        raise LineFault("no JSON text") from None
+        raise LineFault("not a JSON text") from None
     if not isinstance(data, dict):
         raise LineFault("a JSON object is wanted")
     return data

@@ -121,14 +121,14 @@ class Outcome:
         yield f"{number(self.steps, 'step')} walked: {self._end()}"
         fault = world.path_axiom_fault()
         if fault and "no_path_axiom" not in self.query.parts:
-            yield f"the truth breaks the path axiom, and so is no map: {fault}; --no-path-axiom"
+            yield f"the truth breaks the path axiom, and so is not a map: {fault}; --no-path-axiom"
         elif breaks := sum(1 for _ in world.exceptions()):
             yield f"the truth has {number(breaks, 'exception')} to consistent boundaries"
         so_far = " so far" * (self.end not in ENDED)
         if self.maps and self.truth is None:
             many = number(len(self.maps), "best map")
             or_more = " or more" * (len(self.maps) == MOST_MAPS)
-            yield f"{many}{or_more}{so_far}; what the truth is, is open"
+            yield f"{many}{or_more}{so_far}; whether the truth is one of them is open"
         elif len(self.maps) == 1:
             yield f"the best map{so_far} is {'' if self.truth else 'not '}the truth"
         elif self.maps:

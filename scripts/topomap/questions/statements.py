@@ -83,7 +83,7 @@ def _unknown(word: str) -> str:
     if word in FIGURES:
         return f"it is a number, to be compared: {word} < 12"
     if word in QUALITIES:
-        return "it is said of the whole map, without more"
+        return "it is about the whole map, so it has no arguments"
     if word == "apart":
         return "no such word; write not same(T,U)"
     known = dict.fromkeys([*RELATIONS, *FIGURES, *QUALITIES])
@@ -138,7 +138,7 @@ def _comparison(figure: str, sign: str, text: str) -> tuple[str, bool]:
     """Make the term of a comparison, and tell whether it says the same or the opposite."""
     if figure not in FIGURES:
         hint = meant(figure, FIGURES) or f"there are {', '.join(FIGURES)}"
-        raise ValueError(f"{_short(figure)}: no number of a map; {hint}")
+        raise ValueError(f"{_short(figure)}: not a number of a map; {hint}")
     count = _number(text, "number")
     if sign in ("=", "!="):
         return f"number({FIGURES[figure]},{count})", sign == "="

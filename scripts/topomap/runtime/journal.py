@@ -88,7 +88,7 @@ class Journal:
             return
         if first != head:
             raise InputError(
-                f"{self.path}: it is of another run; without --resume this run starts anew"
+                f"{self.path}: it belongs to another run; without --resume this run starts anew"
             )
         self._end = self._file.tell()
         self._sum = total = zlib.crc32(first)

@@ -57,8 +57,8 @@ def refusal(experience: Experience, query: Query) -> str | None:
         "a marker": experience.names(),
         "odometry": experience.shifts,
         "lengths": experience.lengths,
-        "visits told to be of one place (same/2, or assumed)": experience.same,
-        "visits told to be of two places (apart/2, or assumed)": experience.apart,
+        "visits said to be of one place (same/2, or assumed)": experience.same,
+        "visits said to be of two places (apart/2, or assumed)": experience.apart,
         "statements that are taken for granted (assume)": experience.assumed,
         "bearings that are not exact": experience.tolerance,
     }
@@ -66,7 +66,7 @@ def refusal(experience: Experience, query: Query) -> str | None:
         if known:
             return what
     if experience.compass_told() not in (0, experience.steps + 1):
-        return "a compass that is not told of each visit"
+        return "a compass that is not given after each step"
     return None
 
 

@@ -79,7 +79,7 @@ class Program:
             options += more
         elif query.encoding == "paper":
             if experience.straight and query.parts & {"boundary", "exceptions"}:
-                said = "the statement has no left and right of paths whose gateways are told"
+                said = "the statement has no left and right of paths whose gateways are given"
                 raise InputError(f"{said}: not with straight/3")
             entry += beyond(experience)
         if experience.assumed:

@@ -214,9 +214,9 @@ def by_bearing(
         for end, other in (ends, ends[::-1]):
             if end in links:
                 first, second = links[end][0], other[0]
-                hint = "another --slots or --north may part them"
+                hint = "another --slots or --north may separate them"
                 if first == second:
-                    hint = "both are taken to be straight, so nothing parts them"
+                    hint = "both are taken to be straight, so nothing separates them"
                 raise InputError(
                     f"place {label(end[0])}: the ways to {label(first)} and {label(second)} "
                     f"fall into one slot, {end[1]} of {slots}; {hint}"

@@ -281,11 +281,11 @@ def _bearing(row: Row, text: str, frame: str) -> float:
     if value is None:
         letters = ", ".join(LETTERS[:6])
         raise row.fault(
-            f"{quoted(text)} is no bearing: a number of degrees or a compass letter ({letters} "
+            f"{quoted(text)} is not a bearing: a number of degrees or a compass letter ({letters} "
             "...) is wanted"
         )
     if not -360 <= value <= 360:
-        raise row.fault(f"{quoted(text)} is no bearing: it is not from -360 to 360 degrees")
+        raise row.fault(f"{quoted(text)} is not a bearing: it is not from -360 to 360 degrees")
     return value % 360 % 360  # for a tiny negative number the first % gives 360
 
 
@@ -298,7 +298,7 @@ def _visit(row: Row, frame: str) -> Visit:
         raise row.fault(f"exits: there are {len(exits)}, more than {MOST}")
     counted = row.number("step")
     if counted is not None and counted != row.step:
-        raise row.fault(f"step: {plain(counted)} stands there, but rows are numbered from 0")
+        raise row.fault(f"step: {plain(counted)} is given, but rows are numbered from 0")
     ends = sorted(exits)
     for one, other in zip(ends, [*ends[1:], ends[0] + 360], strict=True):
         if len(exits) > 1 and other - one < 1e-6:
@@ -412,8 +412,8 @@ def _by_straight_way(before: Visit, here: Visit, most: float | None) -> int:
     """The exit by which one arrived, if ways are nearly straight."""
     if most is None:
         raise here.row.fault(
-            "which exit one arrived by is not told; the column arrived tells it, or "
-            "--straight-ways DEGREES, by how much ways bend at most"
+            "the exit by which one arrived is not known; name it in the column arrived, "
+            "or say by --straight-ways DEGREES how much ways bend at most"
         )
     assert before.taken is not None
     back = (before.exits[before.taken] + 180) % 360
@@ -679,7 +679,7 @@ def _shift(row: Row, unit: float) -> tuple[int, int] | None:
         return None
     if east is None or north is None:
         missing = "north" if north is None else "east"
-        raise row.fault(f"{missing}: it is empty, but the other one of east and north is told")
+        raise row.fault(f"{missing}: it is empty, but the other one of east and north is given")
     return round(east / unit), round(north / unit)
 
 

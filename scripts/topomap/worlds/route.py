@@ -50,7 +50,7 @@ def letters(text: str, slots: int) -> list[int]:
     names = COMPASS.get(slots)
     if names is None:
         raise InputError(
-            f"route {shown!r}: with {slots} slots a route is numbers apart by commas "
+            f"route {shown!r}: with {slots} slots a route is numbers separated by commas "
             "(compass letters need 4 or 8)"
         )
     route: list[int] = []

@@ -19,11 +19,11 @@ from topomap.runtime.near import meant
 
 COLUMNS = {
     "exits": "the bearings of the exits that are seen",
-    "taken": "that of the exit by which the place is left",
-    "arrived": "that of the exit by which one arrived",
-    "length": "how long the way is that is taken",
-    "east": "how far to the east the way that is taken leads",
-    "north": "how far to the north it leads",
+    "taken": "the bearing of the exit by which the place is left",
+    "arrived": "the bearing of the exit by which one arrived",
+    "length": "the length of the way that is taken",
+    "east": "how far to the east this way leads",
+    "north": "how far to the north this way leads",
     "displacement": "both of these, as two numbers",
     "landmarks": "what is recognised at the place",
     "drop": "markers that are put down",
@@ -31,8 +31,8 @@ COLUMNS = {
     "marker": "markers that are seen",
     "start": "yes, if a new log begins here",
     "look": "yes, if this is a second look from where one stands",
-    "step": "the number of the row, which is checked",
-    "note": "anything, which is passed over",
+    "step": "the number of the row, which must be right",
+    "note": "anything; it is ignored",
 }
 BEARINGS = ("exits", "taken", "arrived", "displacement")  # lists of numbers
 LISTS = ("landmarks", "drop", "pick", "marker")

@@ -249,11 +249,11 @@ class _Reader:
                 continue
             rest = [_Word(first[1:], False)] * (len(first) > 1) + words[1:]
             if not rest:
-                raise self.fault("a command is to follow the asterisk")
+                raise self.fault("a command must follow the asterisk")
             name, words = rest[0].text.lower(), rest[1:]
             if name == "begin":
                 if len(blocks) == DEEPEST:
-                    raise self.fault(f"more than {DEEPEST} blocks in each other")
+                    raise self.fault(f"more than {DEEPEST} nested blocks")
                 names = self._parts(words[0]) if words else ()
                 self._only(words, 1)
                 blocks.append((names, self.now, number))
@@ -299,7 +299,7 @@ class _Reader:
                 if path in self.opened:
                     raise self.fault(f"{said}: this file is being read, so it includes itself")
                 if self.files == MOST_FILES or len(self.opened) == DEEPEST:
-                    most = f"{MOST_FILES} files, or {DEEPEST} in each other"
+                    most = f"{MOST_FILES} files, or {DEEPEST} nested in each other"
                     raise self.fault(f"{said}: more than {most}")
                 if path.suffix.lower() in (".dat", ".mak", ".clp", ".srv", ".wpj", ".plt"):
                     raise self.fault(f"{said}: only files of Survex are read")
@@ -541,7 +541,7 @@ class _Reader:
         ):
             length = 0.0
         if length < 0:
-            raise self.fault("the tape, as it is corrected, is below 0")
+            raise self.fault("the corrected tape is below 0")
         return length
 
     def _towards(self, told: Mapping[str, _Word], flat: float) -> Point:

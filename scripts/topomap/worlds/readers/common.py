@@ -78,7 +78,8 @@ def name_of(file: str, what: str, told: object) -> str:
     if len(text) > LONGEST:
         raise InputError(f"{file}: {what}: a name of more than {LONGEST} letters")
     if "\0" in text or (not text.isprintable() and any("\ud800" <= c <= "\udfff" for c in text)):
-        raise InputError(f"{file}: {what}: a name with a sign that is no letter: {shown(text)}")
+        said = f"a name with a character that is not allowed: {shown(text)}"
+        raise InputError(f"{file}: {what}: {said}")
     return text
 
 

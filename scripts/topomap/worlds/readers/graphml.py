@@ -127,7 +127,7 @@ def plan_of(file: str, graph: "nx.Graph[Any]", reading: Reading) -> Plan:
         if one == other and len({*course}) < 3:
             raise InputError(
                 f"{file}: the way from place {printable(str(one))} back to itself has no course, "
-                "so no slots can be had for it"
+                "so it cannot be given slots"
             )
         ends = []
         for place, line in ((one, course), (other, course[::-1])):
@@ -230,7 +230,7 @@ def _course(file: str, one: Place, other: Place, data: Data) -> tuple[Point, ...
         points = _points(str(data.get("geometry", "")))
     except (ValueError, TypeError, KeyError, IndexError, RecursionError, OverflowError):
         names = f"{printable(str(one))} to {printable(str(other))}"
-        said = "its geometry is no LINESTRING (x y, ...), and no list of points"
+        said = "its geometry is neither a LINESTRING (x y, ...) nor a list of points"
         raise InputError(f"{file}: the way from place {names}: {said}") from None
     return None if points is None else tuple(points)
 
@@ -250,7 +250,7 @@ def _points(text: str) -> list[Point] | None:
         rows = json.loads(text.translate(str.maketrans("()", "[]")))
     points = [(float(row[0]), float(row[1])) for row in rows]
     if len(points) < 2 or not all(abs(number) <= LARGEST for point in points for number in point):
-        raise ValueError("two points are wanted, and no numbers without end")
+        raise ValueError("two points or more are wanted, with finite numbers")
     return points
 
 

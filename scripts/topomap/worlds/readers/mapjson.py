@@ -48,7 +48,7 @@ def read(file: str, content: bytes, reading: Reading) -> Plan:
     formats.demand(file, told)
     results = told.get("results") if isinstance(told, dict) and "results" in told else [told]
     if not isinstance(results, list) or not results or not isinstance(results[0], dict | list):
-        raise InputError(f"{file}: results: no list of answers")
+        raise InputError(f"{file}: results: not a list of answers")
     first = results[0]
     formats.demand(file, first)
     if isinstance(first, list) or "maps" not in first:

@@ -108,7 +108,8 @@ def _names(file: str, nodes: Sequence[Mapping[str, Any]]) -> list[str]:
     seen = set()
     for number, node in enumerate(nodes):
         if "id" not in node:
-            raise InputError(f"{file}: node {number} of the list, from 0, has no id, others have")
+            said = f"node {number} of the list, from 0, has no id, but others have one"
+            raise InputError(f"{file}: {said}")
         names.append(_name(file, f"node {number} of the list, from 0", node["id"]))
         if names[-1] in seen:
             raise InputError(f"{file}: node {shown(names[-1])} occurs twice")

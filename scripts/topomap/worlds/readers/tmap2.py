@@ -191,7 +191,7 @@ def _yaml(file: str, content: bytes) -> Any:
     except yaml.YAMLError as error:
         mark = getattr(error, "problem_mark", None)
         line = f"{mark.line + 1}" if mark else ""
-        said = getattr(error, "problem", None) or "a sign that is not allowed"
+        said = getattr(error, "problem", None) or "a character that is not allowed"
         raise InputError(f"{file}:{line}: not YAML: {' '.join(str(said).split())[:100]}") from None
     except (RecursionError, ValueError, TypeError):
         raise InputError(f"{file}: not YAML that can be read") from None
