@@ -94,8 +94,8 @@ def tables() -> str:
         "all": rows,
     }
     text += (
-        f"\nThe next table has sums over {EXPERIENCES:,} random experiences of up to {STEPS} steps. "
-        "Every other one is with planarity.\n\n"
+        f"\nThe next table has sums over {EXPERIENCES:,} random experiences of up to {STEPS} "
+        "steps. Every other one is with planarity.\n\n"
         "| experiences | how many | admitted | by inclusion | by number | in both "
         "| they differ in |\n"
         "|---|--:|--:|--:|--:|--:|--:|\n"
