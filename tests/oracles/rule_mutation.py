@@ -18,11 +18,12 @@ import signal
 import sys
 import tomllib
 from collections import Counter
-from collections.abc import Callable, Container, Iterable, Iterator, Sequence
+from collections.abc import Callable, Container, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import groupby, product
 from pathlib import Path
-from typing import Any
+from types import MappingProxyType
+from typing import Any, NamedTuple
 
 import clingo
 from clingo import ast
@@ -38,6 +39,7 @@ LISTED = ROOT / "tests/oracles/equivalent.toml"
 REPORT = ROOT / "docs/mutation.md"
 KINDS = ("remove", "drop", "negate", "shift")
 FATES = ("survived", "killed", "refused", "endless", "larger")
+UNDECIDED = "undecided"  # survived the first ENOUGH queries, and was asked no more of them
 SECONDS = 5  # of the processor, for one query: the encodings take milliseconds
 BYTES = 2 << 30
 ENOUGH = 1500  # queries, in an order drawn at random, for a mutant that is proved to be equivalent
@@ -70,9 +72,17 @@ COMPLEMENT |= {other: one for one, other in COMPLEMENT.items()}
 
 INCLUDE = re.compile(r'^#include "(.+)\.lp"\.', re.MULTILINE)
 
-Trials = Callable[[list["Mutant"]], Iterator[tuple["Mutant", str]]]
+Trials = Callable[[list["Mutant"], dict["Mutant", str]], Iterator["Tried"]]
 Key = tuple[str, str, str]  # the file, the rule and the change of a mutant
 Programs = dict[tuple[str, ...], str]  # by the files of a query
+
+
+class Tried(NamedTuple):
+    """A mutant with its fate; and the name of the query that settled it, or nothing."""
+
+    mutant: "Mutant"
+    fate: str
+    query: str
 
 
 @dataclass(frozen=True)
@@ -256,20 +266,29 @@ def rules(program: str, query: Query) -> int:
     return int(control.statistics["problem"]["lp"]["rules"])
 
 
-def suffer(programs: Programs, whole: Programs, asked: list[Query]) -> str:
-    """The fate of a mutant at the first query that it does not survive; none if the programs
-    without it do not survive that either. A query that takes too long ends the process."""
+def name_of(query: Query) -> str:
+    """A name of what a query asks, and of its answers, that is the same in each process."""
+    answers = sorted((cost, sorted(atoms)) for cost, atoms in query.answers)
+    asked = query.files, query.facts, query.arguments, query.steps, query.parts, answers
+    return hashlib.sha256(repr(asked).encode()).hexdigest()[:16]
+
+
+def suffer(programs: Programs, whole: Programs, asked: list[Query]) -> tuple[str, int]:
+    """The fate of a mutant at the first query that it does not survive, and the number of that
+    query; no fate if the programs without it do not survive that either. A query that takes too
+    long ends the process."""
     resource.setrlimit(resource.RLIMIT_AS, (BYTES, BYTES))
-    for query in asked:
+    for number, query in enumerate(asked):
         signal.setitimer(signal.ITIMER_PROF, SECONDS)
         try:
             fate = tried(programs[query.files], query)
         except MemoryError:
-            return "endless"
+            return "endless", number
         if fate != "survived":
             signal.setitimer(signal.ITIMER_PROF, SECONDS)
-            return fate if tried(whole[query.files], query) == "survived" else ""
-    return "survived"
+            right = tried(whole[query.files], query) == "survived"
+            return fate if right else "", number
+    return "survived", -1
 
 
 def fates(
@@ -279,10 +298,14 @@ def fates(
     measured: list[Query],
     jobs: int,
     proved: Container[Key] = (),
-) -> Iterator[tuple[Mutant, str]]:
-    """The fate of each mutant, as they come, each in a process of its own. One that survives ENOUGH
-    queries, and is neither larger nor ``proved`` to be equivalent, is asked all the others."""
+    before: Mapping[Mutant, str] = MappingProxyType({}),
+    quick: bool = False,
+) -> Iterator[Tried]:
+    """The fate of each mutant, as they come, each in a process of its own. The query that
+    settled it ``before`` comes first; the ``proved`` mutants come last. A mutant that survives ENOUGH queries, and is neither larger
+    nor ``proved`` to be equivalent, is asked all the others, but not if this is to be ``quick``."""
     loaded = sets(folder, asked + measured)
+    names_of_queries = [name_of(query) for query in asked]
     names = set().union(*loaded.values())
     texts = {file: list(map(str, statements(folder, file))) for file in names}
 
@@ -293,16 +316,18 @@ def fates(
     lean = {file for query in measured for file in loaded[query.files]}
     some = any(mutant.file in lean for mutant in chosen)
     least = [(query, rules(whole[query.files], query)) for query in measured if some]
-    waiting = list(reversed(chosen))
-    running: dict[int, Mutant] = {}
+    waiting = sorted(reversed(chosen), key=lambda mutant: mutant.key not in proved)
+    running: dict[int, tuple[Mutant, int]] = {}
     try:
         while waiting or running:
             while waiting and len(running) < jobs:
                 mutant = waiting.pop()
+                result, told = os.pipe()
                 if child := os.fork():
-                    running[child] = mutant
+                    os.close(told)
+                    running[child] = mutant, result
                     continue
-                code = len(FATES)
+                code = 1
                 try:
                     texts[mutant.file][mutant.number] = mutant.text
                     mutated = {
@@ -310,8 +335,10 @@ def fates(
                         for files, every in loaded.items()
                         if mutant.file in every
                     }
-                    mine = [query for query in asked if query.files in mutated]
-                    fate = suffer(mutated, whole, mine[:ENOUGH])
+                    mine = [n for n, query in enumerate(asked) if query.files in mutated]
+                    mine.sort(key=lambda n: names_of_queries[n] != before.get(mutant))
+                    questions = [asked[number] for number in mine]
+                    fate, number = suffer(mutated, whole, questions[:ENOUGH])
                     if fate == "survived" and mutant.file in lean:
                         signal.setitimer(signal.ITIMER_PROF, SECONDS * len(measured))
                         more = sum(
@@ -320,20 +347,30 @@ def fates(
                             if query.files in mutated
                         )
                         fate = "larger" if more > 0 else fate
-                    if fate == "survived" and mutant.key not in proved:
-                        fate = suffer(mutated, whole, mine[ENOUGH:])
-                    code = FATES.index(fate) if fate else len(FATES) + 1
+                    if fate == "survived" and mutant.key not in proved and questions[ENOUGH:]:
+                        if quick:
+                            fate = UNDECIDED
+                        else:
+                            fate, number = suffer(mutated, whole, questions[ENOUGH:])
+                            number += ENOUGH if fate != "survived" else 0
+                    settled = names_of_queries[mine[number]] if number >= 0 else "-"
+                    os.write(told, f"{fate or 'wrong'} {settled}".encode())
+                    code = 0
                 finally:
                     os._exit(code)
             child, status = os.wait()
-            mutant, code = running.pop(child), os.waitstatus_to_exitcode(status)
-            if code > len(FATES):
+            mutant, result = running.pop(child)
+            with os.fdopen(result, encoding="utf-8") as words:
+                fate, _, query = words.read().partition(" ")
+            code = os.waitstatus_to_exitcode(status)
+            if fate == "wrong":
                 raise InputError(f"{mutant.file}: a query has a wrong answer without a change")
-            if code == len(FATES):
+            if code > 0:
                 raise RuntimeError(f"could not try {mutant}")
-            yield mutant, FATES[code] if code >= 0 else "endless"
+            yield Tried(mutant, fate, query) if code == 0 else Tried(mutant, "endless", "-")
     finally:
-        for child in running:
+        for child, (_, result) in running.items():
+            os.close(result)
             os.kill(child, signal.SIGKILL)
             os.waitpid(child, 0)
 
@@ -352,9 +389,7 @@ def marks(
                 told.append(repr((files, texts)))
         for query in asked + measured:
             if file in loaded[query.files]:
-                answers = sorted((cost, sorted(atoms)) for cost, atoms in query.answers)
-                asked_for = query.files, query.facts, query.arguments, query.steps, query.parts
-                told.append(repr((*asked_for, answers)))
+                told.append(name_of(query))
         settled = clingo.__version__, SECONDS, BYTES
         of_file[file] = hashlib.sha256(repr((settled, sorted(told))).encode())
     found = {}
@@ -365,16 +400,37 @@ def marks(
     return found
 
 
-def going_on(path: Path, mark: dict[Mutant, str], tried: Trials) -> Iterator[tuple[Mutant, str]]:
-    """The fates that a file knows already, then those of the others, which are added to it."""
-    known = dict(line.split() for line in path.read_text().splitlines()) if path.exists() else {}
-    yield from ((mutant, known[mark[mutant]]) for mutant in mark if mark[mutant] in known)
+def going_on(
+    path: Path, mark: dict[Mutant, str], trials: Trials, quick: bool = False
+) -> Iterator[Tried]:
+    """The fates that a file knows already, then those of the others, which are added to it.
+
+    A line of the file has a digest of the rule and the change of a mutant, its mark, its fate
+    and the query that settled it; the last line of a mutant counts. If its mark is another one by
+    now, that query is asked first: as a rule it settles the mutant again."""
+    known = {}
+    if path.exists():
+        for line in path.read_text().splitlines():
+            key, *rest = line.split()
+            known[key] = rest
+    keys = {
+        mutant: hashlib.sha256(repr((*mutant.key, mutant.text)).encode()).hexdigest()[:16]
+        for mutant in mark
+    }
+    left, before = [], {}
+    for mutant, key in keys.items():
+        at, fate, query = known.get(key, ("", "", "-"))
+        if at == mark[mutant] and (quick or fate != UNDECIDED):
+            yield Tried(mutant, fate, query)
+            continue
+        left.append(mutant)
+        before[mutant] = query
     path.parent.mkdir(parents=True, exist_ok=True)
     with path.open("a") as file:
-        for mutant, fate in tried([mutant for mutant in mark if mark[mutant] not in known]):
-            file.write(f"{mark[mutant]} {fate}\n")
+        for one in trials(left, before):
+            file.write(f"{keys[one.mutant]} {mark[one.mutant]} {one.fate} {one.query}\n")
             file.flush()
-            yield mutant, fate
+            yield one
 
 
 def listed(path: Path) -> dict[Key, str]:
@@ -443,9 +499,9 @@ def count(text: str) -> int:
 def faults(fate: dict[Mutant, str], reasons: dict[Key, str], known: set[Key]) -> Iterator[str]:
     """What is wrong with the fates, or with the list of the equivalent mutants."""
     for mutant, end in fate.items():
-        if end == "survived" and mutant.key not in reasons:
-            yield f"survives, not listed: {mutant}"
-        if end != "survived" and mutant.key in reasons:
+        if end in ("survived", UNDECIDED) and mutant.key not in reasons:
+            yield f"{'survives' if end == 'survived' else end}, not listed: {mutant}"
+        if end not in ("survived", UNDECIDED) and mutant.key in reasons:
             yield f"listed, but {end}: {mutant}"
     for key in reasons:
         if key not in known:
@@ -465,6 +521,11 @@ def main(
     parser.add_argument("--listed", type=Path, default=LISTED, help="the equivalent mutants")
     parser.add_argument("--report", type=Path, default=REPORT, help="the file to write")
     parser.add_argument("--known", type=Path, help="a file that keeps what was tried, to go on")
+    parser.add_argument(
+        "--quick",
+        action="store_true",
+        help=f"ask at most {ENOUGH:,} queries, and list the mutants that are undecided; no report",
+    )
     parser.add_argument("files", nargs="*", help="try only these, as theory/links; no report")
     options = parser.parse_args(argv)
     names = named_files(folder)
@@ -482,16 +543,17 @@ def main(
             chosen = [mutant for mutant in chosen if mutant.key not in reasons]
             chosen = random.Random(options.seed).sample(chosen, min(options.sample, len(chosen)))
 
-        def tried(left: list[Mutant]) -> Iterator[tuple[Mutant, str]]:
-            return fates(folder, left, asked(), measured(), options.jobs, reasons)
+        def trials(left: list[Mutant], before: dict[Mutant, str]) -> Iterator[Tried]:
+            how = options.jobs, reasons, before, options.quick
+            return fates(folder, left, asked(), measured(), *how)
 
-        trials = tried(chosen)
+        found = trials(chosen, {})
         if options.known:
             mark = marks(folder, chosen, asked(), measured())
-            trials = going_on(options.known, mark, tried)
-        ends = dict(tqdm(trials, "mutants", len(chosen), disable=None))
+            found = going_on(options.known, mark, trials, options.quick)
+        ends = {one.mutant: one.fate for one in tqdm(found, "mutants", len(chosen), disable=None)}
         fate = {mutant: ends[mutant] for mutant in chosen}
-        if not (options.files or options.sample):
+        if not (options.files or options.sample or options.quick):
             with output(str(options.report)) as text:
                 text.write(report(fate, reasons))
     except InputError as error:
@@ -500,7 +562,8 @@ def main(
     except KeyboardInterrupt:
         return 130
     numbers = Counter(fate.values())
-    print(f"{len(fate)} mutants:", ", ".join(f"{numbers[end]} {end}" for end in FATES))
+    shown = (*FATES, UNDECIDED) if options.quick else FATES
+    print(f"{len(fate)} mutants:", ", ".join(f"{numbers[end]} {end}" for end in shown))
     wrong = list(faults(fate, reasons, {mutant.key for mutant in everyone}))
     for fault in wrong:
         print(fault)

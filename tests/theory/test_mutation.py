@@ -3,6 +3,7 @@
 import os
 import subprocess
 import sys
+from collections import Counter
 
 import pytest
 from conftest import ENCODINGS, ROOT
@@ -136,9 +137,9 @@ def test_what_was_tried_is_not_tried_again(mutated, tmp_path, monkeypatch):
     tried, fates = [], mutate.fates
 
     def note(folder, chosen, *more):
-        for mutant, fate in fates(folder, chosen, *more):
-            tried.append(mutant)
-            yield mutant, fate
+        for one in fates(folder, chosen, *more):
+            tried.append(one.mutant)
+            yield one
 
     monkeypatch.setattr(mutate, "fates", note)
     assert mutated(listing(EQUIVALENT), "--known", str(known))[3] == report
@@ -146,6 +147,43 @@ def test_what_was_tried_is_not_tried_again(mutated, tmp_path, monkeypatch):
     (tmp_path / "folder/counter.lp").write_text(COUNTER.replace("n(X)", "n(X), X >= 0"))
     mutated(listing(EQUIVALENT), "--known", str(known))
     assert len(tried) > 11
+
+
+def test_the_query_that_settled_a_mutant_comes_first_the_next_time(mutated, tmp_path, monkeypatch):
+    """Where a query came to the others."""
+    other = Query(("counter",), "", shown("n(0)", "n(1)", "n(2)"), ("-c", "limit=2"))
+    known = tmp_path / "known.txt"
+    mutated(listing(EQUIVALENT), "--known", str(known))
+    settled = Counter(line.split()[-1] for line in known.read_text().splitlines())
+    first, second = map(mutate.name_of, (ASKED[0], other))
+    assert settled == {first: 9, "-": 2}
+    log, suffer = tmp_path / "log", mutate.suffer
+
+    def note(programs, whole, asked):
+        with log.open("a") as file:
+            file.write(f"{mutate.name_of(asked[0])}\n")
+        return suffer(programs, whole, asked)
+
+    monkeypatch.setattr(mutate, "suffer", note)
+    monkeypatch.setitem(globals(), "ASKED", [other, ASKED[0]])
+    mutated(listing(EQUIVALENT), "--known", str(known))
+    assert Counter(log.read_text().split()) == {first: 9, second: 2}
+
+
+def test_quickly_a_survivor_of_the_first_queries_is_undecided(mutated, tmp_path, monkeypatch):
+    """It is tried again as soon as it may be asked more."""
+    monkeypatch.setattr(mutate, "ENOUGH", 1)
+    more = Query(("counter",), "n(5).", shown("n(0)", "n(1)", "n(5)"), ("-c", "limit=1"))
+    monkeypatch.setitem(globals(), "ASKED", [*ASKED, more])
+    known = tmp_path / "known.txt"
+    status, out, _, report = mutated("equivalent = []", "--quick", "--known", str(known))
+    assert (status, report) == (1, None)
+    first, *faults = out.splitlines()
+    assert first.endswith("1 endless, 0 larger, 1 undecided")
+    assert faults == ["undecided, not listed: counter | #show n/1. | remove"]
+    assert mutated(listing(EQUIVALENT), "--known", str(known))[0] == 0
+    assert known.read_text().count("undecided") == 1
+    assert known.read_text().splitlines()[-1].split()[2] == "survived"
 
 
 MARKS = """
@@ -287,7 +325,7 @@ def test_no_statement_can_be_removed(portion):
     ]
     mine = chosen[portion::PORTIONS]
     assert len(mine) > 30
-    for mutant, fate in mutate.fates(ENCODINGS, mine, queries(), sizes(), 1):
+    for mutant, fate, _ in mutate.fates(ENCODINGS, mine, queries(), sizes(), 1):
         assert fate in ("killed", "refused", "larger"), mutant
 
 
@@ -297,7 +335,7 @@ def test_what_is_open_survives(key):
     """Each entry is a mutant, and still survives: else it is to go from the list."""
     assert key not in mutate.listed(mutate.LISTED)
     (mutant,) = [one for one in mutate.mutants(ENCODINGS, key[0]) if one.key == key]
-    ((_, fate),) = mutate.fates(ENCODINGS, [mutant], queries(), sizes(), 1)
+    ((_, fate, _),) = mutate.fates(ENCODINGS, [mutant], queries(), sizes(), 1)
     assert fate == "survived"
 
 
