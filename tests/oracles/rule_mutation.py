@@ -301,9 +301,10 @@ def fates(
     before: Mapping[Mutant, str] = MappingProxyType({}),
     quick: bool = False,
 ) -> Iterator[Tried]:
-    """The fate of each mutant, as they come, each in a process of its own. The query that
-    settled it ``before`` comes first; the ``proved`` mutants come last. A mutant that survives ENOUGH queries, and is neither larger
-    nor ``proved`` to be equivalent, is asked all the others, but not if this is to be ``quick``."""
+    """The fate of each mutant, as they come, each in a process of its own; the ``proved`` ones come
+    last. The query that settled a mutant ``before`` comes first. A mutant that survives ENOUGH
+    queries, and is neither larger nor ``proved`` to be equivalent, is asked all the others, but
+    not if this is to be ``quick``."""
     loaded = sets(folder, asked + measured)
     names_of_queries = [name_of(query) for query in asked]
     names = set().union(*loaded.values())
@@ -316,7 +317,8 @@ def fates(
     lean = {file for query in measured for file in loaded[query.files]}
     some = any(mutant.file in lean for mutant in chosen)
     least = [(query, rules(whole[query.files], query)) for query in measured if some]
-    waiting = sorted(reversed(chosen), key=lambda mutant: mutant.key not in proved)
+    waiting = chosen[::-1]
+    waiting.sort(key=lambda mutant: mutant.key not in proved)
     running: dict[int, tuple[Mutant, int]] = {}
     try:
         while waiting or running:
