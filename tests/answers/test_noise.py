@@ -140,7 +140,7 @@ def test_figures_are_of_what_is_there():
             assert holding == said
 
 
-def test_no_view_is_disbelieved_for_a_map_to_be_closed():
+def test_no_view_is_taken_as_misread_for_a_map_to_be_closed():
     """The one step leads to a place with a gateway more; without that, the map were closed."""
     seen = parse("slots(2). view(0,0). turn(1,0). view(1,0). view(1,1).", "seen")
     found = list(solving.best(seen, Query(noise=1), QUIET))
@@ -229,7 +229,7 @@ RETRACED = {
     ],
 )
 def test_one_wrong_view_hides_every_map(size, step, misread):
-    """And with one that is disbelieved, the real map is back, and that view is the one."""
+    """And with one that is taken as misread, the real map is back, and that view is the one."""
     true, truth = back_and_forth(size, RETRACED[size])
     seen = true.corrected(misread)
     if not seen.misled():
@@ -262,7 +262,7 @@ def test_the_instance_is_what_its_header_says():
     assert read(MISREAD) == true.corrected([(13, 2)])
 
 
-def test_the_command_says_what_it_disbelieves(topomap):
+def test_the_command_says_what_is_misread(topomap):
     assert topomap("solve", MISREAD, "--optimal").returncode == 1
     done = topomap("solve", MISREAD, "--optimal", "--planar", "--noise", "1")
     assert (done.returncode, done.stderr) == (0, "")
@@ -285,7 +285,7 @@ def test_maps_with_misreadings_are_checked_and_drawn(topomap, tmp_path, capsys):
     assert "9 places, 12 links" in topomap("show", file).stdout
     for change, fault in (
         (lambda d, m: d.update(noise=0), "misread: 1 view, more than 0"),
-        (lambda d, m: d.pop("noise"), "misread: it is not said how many"),
+        (lambda d, m: d.pop("noise"), "misread: the file does not say how many"),
         (lambda d, m: m.pop("misread"), "violation("),
         (lambda d, m: m["misread"][0].update(seen=False), "misread: not what"),
         (lambda d, m: m["misread"][0].update(step=True), "misread: not what"),
@@ -316,7 +316,7 @@ def test_maps_of_clingo_with_misreadings_are_checked(topomap, tmp_path):
     assert topomap("check", MISREAD, file, "--closed", "--noise", "1").returncode == 0
     done = topomap("check", MISREAD, file, "--closed")
     assert done.returncode == 1
-    assert "it is not said how many views may be wrong" in done.stdout
+    assert "the file does not say how many views may be wrong" in done.stdout
 
 
 UNSEEN = {

@@ -159,11 +159,11 @@ def tampered(answer):
 
 
 NOISY = "instances/grid-3x3-misread.lp"
-DISBELIEVED = {"optimal": True, "planar": True, "noise": 1}
+MISREAD = {"optimal": True, "planar": True, "noise": 1}
 JUDGED = {  # what is judged, of which maps, with which options; and how many of it are unsound
     "maps": (GRID, {"closed": True}, entries, {"planar": True}, 1),
-    "noisy": (NOISY, DISBELIEVED, entries, {"noise": 1}, 0),
-    "noise that is not allowed": (NOISY, DISBELIEVED, entries, {"noise": 0}, 1),
+    "noisy": (NOISY, MISREAD, entries, {"noise": 1}, 0),
+    "noise that is not allowed": (NOISY, MISREAD, entries, {"noise": 0}, 1),
     "tampered": (GRID, {"optimal": True}, tampered, {}, 1),
     "doubled": (GRID, {"optimal": True}, lambda answer: entries(answer) * 2, {}, 2),
     "more keys": (GRID, {"optimal": True}, lambda a: [{**e, "x": 1} for e in entries(a)], {}, 2),

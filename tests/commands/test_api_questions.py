@@ -230,7 +230,7 @@ def test_explore_among_maps_that_are_given(seen):
 
 def test_maps_of_another_experience_are_refused(seen):
     others = topomap.explore(seen(LARGER), bound=16).maps
-    with pytest.raises(InputError, match="among: map 1: 30 steps, the instance has 16"):
+    with pytest.raises(InputError, match="among: map 1: 30 steps, but the instance has 16"):
         topomap.explore(seen(SNAKE), others)
 
 

@@ -564,7 +564,7 @@ def test_a_page_of_maps_that_are_given(tmp_path, capsys):
     capsys.readouterr()
     other = ROOT / "instances/grid-3x4-paper.lp"
     for call, fault in (
-        ((other,), f"{given}: map 1: 16 steps, the instance has 21"),
+        ((other,), f"{given}: map 1: 16 steps, but the instance has 21"),
         ((ROOT / GRID, "--planar"), "it breaks the rule planar of check.lp"),
         ((ROOT / GRID, "--bound", "8"), "it breaks the rule bound(8) of check.lp"),
         ((ROOT / GRID, other), "topomap report: --maps-from goes with one instance"),

@@ -617,7 +617,7 @@ def test_maps_of_clingo_are_not_shown_without_the_right_instance(inside, tmp_pat
 
 
 @pytest.mark.long
-def test_a_map_that_disbelieves_is_shown_as_it_thinks(topomap):
+def test_a_map_with_misread_views_is_shown_as_corrected(topomap):
     instance = "instances/grid-3x3-misread.lp"
     options = "noise", "closed", "planar", "minimal", "-n0", "--opt-mode=optN", "--const=noise=1"
     given = clingo(*options, instance=instance)

@@ -210,7 +210,7 @@ def test_other_hostile_networks(tmp_path):
         ('{"maps": [{"at": [["0", "0", "0"]]}]}', "map 1: at is not"),
         ('{"maps": [{"at": [[0, ' + "9" * 5000 + ", 0]]}]}", "not a JSON"),
         ('{"maps": [{"at": [[0, 0, 0]]}]} \0', "not a text"),
-        ('{"maps": [{"at": [[0, 0, 0]]}]}', "0 steps, the instance has 16"),
+        ('{"maps": [{"at": [[0, 0, 0]]}]}', "0 steps, but the instance has 16"),
         (
             f'{{"maps": [{{"at": {[[t, 0, 0] for t in range(17)]}}}]}}',
             "step 1: it breaks the rule itself",

@@ -25,7 +25,7 @@ UNFINISHED = "not finished"
 class _Known:
     """What is known of an answer by now.
 
-    It is apart from the answer, so that the search does not hold a reference to the answer, and
+    It is separate from the answer, so that the search does not hold a reference to the answer, and
     ends when nobody else holds one.
     """
 

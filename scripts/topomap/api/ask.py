@@ -121,7 +121,7 @@ def ask(
     timeout: float | None = None,
     **parts: Unpack[Parts],
 ) -> StatementAnswers:
-    """Tell of each statement whether it holds in all consistent maps, in some or in none.
+    """Say for each statement whether it holds in all consistent maps, in some or in none.
 
     The maps are those of the paper, sections II and III. A statement that holds in all maps is a
     cautious consequence of the experience; one that holds in some maps is a brave consequence.

@@ -106,7 +106,7 @@ def _walks(
 
 
 def _walked(watch: Watch, walk: Walk, most: int, seconds: float) -> dict[str, Any]:
-    """What is told of a walk."""
+    """What the atlas says about a walk."""
     counts = {}
     for kind in KNOWLEDGE:
         watch.phase(f"{len(walk.route)} steps, {kind}")

@@ -47,9 +47,9 @@ def check(
         noise: The largest number of views that a map may contradict.
         truth: The real map, for maps that say whether they are the real one (the key ``real``).
         timeout: The number of seconds after which no further map is judged.
-        every: Whether to tell of each map which axioms and defaults it keeps and breaks (``axioms``
-            of its verdict), and its ``exceptions``. Then a map is not wrong because it breaks what
-            is neither demanded here nor said of it; this includes the path axiom.
+        every: Whether to report for each map which axioms and defaults it keeps and breaks
+            (``axioms`` of its verdict), and its ``exceptions``. Then a map is not wrong because
+            it breaks what is neither demanded here nor said of it; this includes the path axiom.
         parts: The demands on the maps, as for ``solve``. The parts ``genus``, ``exceptions``,
             ``minimal`` and ``euler`` cannot be judged of a single map. With ``no_path_axiom`` maps
             need not keep the path axiom.
@@ -103,7 +103,7 @@ def _documents(given: Any) -> list[Document]:
     Maps that are given one by one make one document, so that no map may occur in it twice.
 
     Raises:
-        TypeError: This is nothing in which there can be maps.
+        TypeError: This cannot contain maps.
         InputError: There are no maps in it.
     """
     if isinstance(given, str | os.PathLike):

@@ -63,7 +63,7 @@ class Explained(Reply):
     def in_the_way(self) -> list[str]:
         """What alone stands in the way of a closed map, as ``Answer.in_the_way`` has it.
 
-        It is told where closed maps were asked for and there is no map. Then there are no reasons.
+        It is given where closed maps were asked for and there is no map. Then there are no reasons.
         """
         return list(self.explanation.in_the_way)
 

@@ -149,7 +149,7 @@ def _asked(among: Among | Iterable[Among]) -> list[str | At]:
 
     Raises:
         TypeError: One is something else.
-        ValueError: There is none. "No map is consistent" would be no answer, as none was looked
+        ValueError: There is none. "No map is consistent" would not be an answer, as none was looked
             for.
     """
     if isinstance(among, _ONE):

@@ -157,7 +157,7 @@ class Follower:
 
     @property
     def record(self) -> Record:
-        """The steps that were told so far."""
+        """The steps that were given so far."""
         return self._following.record
 
     def step(
@@ -179,7 +179,7 @@ class Follower:
         look: bool = False,
         watch: Watch | None = None,
     ) -> FollowerStatus:
-        """Tell the next step, and find out what is known after it.
+        """Give the next step, and find out what is known after it.
 
         Parameters:
             view: The slots of the gateways that are seen, from 0 to slots - 1, counted clockwise
@@ -197,7 +197,7 @@ class Follower:
             same: Earlier steps after which the agent was at this place.
             apart: Earlier steps after which the agent was at another place.
             straight: The pairs of slots of the view whose gateways are on one path. Either the
-                first view and the later ones tell them, or none does; None for a later view means
+                first view and the later ones have them, or none has; None for a later view means
                 that no two gateways are on one path.
             start: Whether a new log of the same world begins here. Then there is no turn.
             look: Whether this step is not a travel but a second look. Then there is no turn.
@@ -297,7 +297,7 @@ def follow(
     """Follow an exploration as it happens (its hypotheses are those of the paper, section II).
 
     Parameters:
-        slots: The number of directions at each place, an even number; None if a line will tell it.
+        slots: The number of directions at each place, an even number; None if a line will give it.
         bound: The largest number of places that a map may have.
         marker: Whether the agent carries a marker, which the next steps may use.
         count_limit: The largest number of hypotheses that is counted. If there are more, only that
@@ -310,7 +310,7 @@ def follow(
             contain a place twice, and may be circular.
 
     Returns:
-        A follower. Its ``step(view)`` tells it the first view, and ``step(view, turn)`` each later
+        A follower. Its ``step(view)`` takes the first view, and ``step(view, turn)`` each later
         one.
 
     Raises:

@@ -37,7 +37,7 @@ def generate(
             the route leaves.
         signs: The share of the places, from 0 to 1, that have their own name as a landmark.
         seed: The seed of what is random: walks, signs, mazes and the errors of the odometry.
-        thin: The share of the ways of a maze, from 0 to 1, that are taken away.
+        thin: The share of the ways of a maze, from 0 to 1, that are removed.
         name: The name of the instance; by default it is made from the arguments.
         compass: Whether to note, after each step, the compass slot of the gateway where the agent
             stands.

@@ -137,7 +137,7 @@ def simulate(
         facing: The slot of the gateway where the robot stands at first; the smallest by default.
         signs: The share of the places, from 0 to 1, that have their own name as a landmark.
         seed: The seed of what is random: signs, mazes and the errors of the odometry.
-        thin: The share of the ways of a maze, from 0 to 1, that are taken away.
+        thin: The share of the ways of a maze, from 0 to 1, that are removed.
         steps: The largest number of steps that the robot walks, 100,000 at most; by default 20 for
             each way.
         marker: Whether the robot carries a marker, which it may put down.

@@ -30,18 +30,19 @@ def world(
         path: A file of one of the formats that ``docs/files.md`` lists.
         slots: The number of directions at a place, an even number; by default the smallest at which
             no two exits of a place share a slot.
-        north: Where slot 0 points, in degrees clockwise of north; by default the direction that may
-            be off the most before two exits of a place share a slot.
+        north: Where slot 0 points, in degrees clockwise of north; by default the direction that
+            leaves the widest margin before two exits of a place share a slot.
         straight: The largest number of degrees by which two exits of a place may be off from being
             opposite if they are on one path; each must be the one most nearly opposite to the
             other. By default the exits in opposite slots are on one path.
         along: How far along a bent way the point is that gives its direction at its end, in metres
             or in the units of the file.
         degrees: Whether coordinates are longitude and latitude; by default the file tells.
-        two_way: Whether ways that can be gone one way only are taken as two-way.
+        two_way: Whether one-way ways are taken as two-way.
         loops: Whether ways back to their own place are kept.
         names: Whether the name of a place in the file is its landmark.
-        radius: In a floor plan, how far apart junctions are at most that are one place, in metres.
+        radius: In a floor plan, the largest distance between junctions that are taken as one place,
+            in metres.
 
     Returns:
         The world, an environment with its ``map``, and ``notes`` on how it was read. (The map is

@@ -113,7 +113,7 @@ def crew_of(args: argparse.Namespace) -> "Crew":
 
 
 def run_of(args: argparse.Namespace, *experiences: "Experience") -> dict[str, Any]:
-    """Describe what a run computes that writes to a file; its journal resumes no other run."""
+    """Describe what a run that writes to a file computes; its journal resumes only this run."""
     if args.output is None:
         return {}
     from topomap.solver.solving import digest

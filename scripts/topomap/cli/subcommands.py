@@ -13,7 +13,7 @@ SUBCOMMANDS = {
     ),
     "solve": "enumerate the maps that are consistent with an exploration",
     "ask": (
-        "say of each statement whether it holds in all maps that are consistent with an "
+        "say for each statement whether it holds in all maps that are consistent with an "
         "exploration, in some or in none, with maps as witnesses"
     ),
     "explain": (
@@ -36,7 +36,7 @@ SUBCOMMANDS = {
     ),
     "atlas": (
         "count how many maps explain each step of a tour and of a random walk in several worlds, "
-        "say which further walk leaves the real map alone and whether minimality prefers it, and "
+        "say which further walk leaves only the real map and whether minimality prefers it, and "
         "write this as a page or as JSON"
     ),
     "count": "count the search tree of an exploration, as the paper's Figure 4 does",

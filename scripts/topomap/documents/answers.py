@@ -67,7 +67,7 @@ def map_line(experience: Experience, found: Found) -> str:
         len(world.pending()),
     )
     way = " ".join(f"{place}.{slot}" for place, slot in found.at)
-    return words.disbelieved(experience, found.misread) + line_of(size, way)
+    return words.contradicted(experience, found.misread) + line_of(size, way)
 
 
 def line_of(size: tuple[int, int, int, int, int], way: str) -> str:

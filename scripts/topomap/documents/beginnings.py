@@ -22,5 +22,5 @@ def beginning(
         InputError: It is no hypothesis of either. One line that begins with ``where``.
     """
     if len(at) - 1 not in (whole.steps, experience.steps):
-        raise InputError(f"{where}: {len(at) - 1} steps, the instance has {experience.steps}")
+        raise InputError(f"{where}: {len(at) - 1} steps, but the instance has {experience.steps}")
     return maps.hypothesis(where, at, whole, demands)[: experience.steps + 1]

@@ -19,7 +19,7 @@ class Chart:
 
     It has the gateways and landmarks of each place, the gateway at the other end of each link, the
     dstate of the agent, and the place of the marker, if it lies somewhere. With a compass it has
-    the compass slot to which slot 0 of each place points. If it is told which gateways are on one
+    the compass slot to which slot 0 of each place points. If it is known which gateways are on one
     path, it has for each gateway the other one on its path, unless its path ends there.
     """
 

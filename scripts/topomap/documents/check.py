@@ -215,7 +215,7 @@ class Grown:
         places = sorted({place for t, (place, _) in stands.items() if t <= step})
         self.stars = {place: sorted(experience.views[place]) for place in places}
         self.lines: dict[Gateway, Gateway] = {}
-        self.told = bool(experience.straight)  # whether it is told which gateways are on one path
+        self.told = bool(experience.straight)  # whether it is known which gateways are on one path
         for place in places if self.told else ():
             for one, other in experience.straight[place]:
                 self.lines |= {(place, one): (place, other), (place, other): (place, one)}
@@ -238,8 +238,8 @@ class Grown:
     def opposite(self, gateway: Gateway) -> Gateway:
         """The direction on the opposite side of the place.
 
-        Where it is told which gateways are on one path, that of a path which ends at gateway S is
-        -1 - S.
+        Where it is known which gateways are on one path, the direction of a path that ends at
+        gateway S is -1 - S.
         """
         place, slot = gateway
         if self.told:

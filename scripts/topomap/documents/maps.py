@@ -58,7 +58,7 @@ class Document:
     def whole(self) -> bool:
         """Whether the maps are said to be all of their kind, and can be.
 
-        They cannot be if one was taken away, or if the search was best-first, which ends at the
+        They cannot be if one was removed, or if the search was best-first, which ends at the
         first map that it finds.
         """
         if self.kind in (BEST_FIRST, UNPROVED):
@@ -351,6 +351,6 @@ def real_map(file: str, experience: Experience, horizon: int | None) -> Topologi
         raise InputError(f"{file}: {len(entries)} maps, but the real map must be the only one")
     at = entries[0]["at"]
     if len(at) != experience.steps + 1:
-        raise InputError(f"{file}: {len(at) - 1} steps, the instance has {experience.steps}")
+        raise InputError(f"{file}: {len(at) - 1} steps, but the instance has {experience.steps}")
     last = experience.steps if horizon is None else horizon
     return experience.map_of(hypothesis(file, at, experience, rules=STEP_RULES)[: last + 1])

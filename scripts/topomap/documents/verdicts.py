@@ -40,8 +40,8 @@ RULES_OF = {PATH_AXIOM: PATH_RULES, **{part: (part,) for part in PROPERTIES}}  #
 class Axioms:
     """Which of the axioms and defaults of the theory a map ``breaks``.
 
-    Each comes with the violations that show it. The genus, and the number of pending gateways, are
-    told, too.
+    Each comes with the violations that show it. It also has the genus and the number of pending
+    gateways.
     """
 
     breaks: dict[str, list[Violation]]
@@ -99,8 +99,8 @@ def axioms_of(experience: Experience, at: Sequence[DState]) -> Axioms:
 class Verdict:
     """What is wrong with a map: the rules that are broken, with steps, and other faults in words.
 
-    If its steps break no rule, it can be told which ``axioms`` and defaults the map breaks, and
-    which ``exceptions`` to consistent boundaries it has; None means that this is not told.
+    If its steps break no rule, it may say which ``axioms`` and defaults the map breaks, and
+    which ``exceptions`` to consistent boundaries it has; None means that this is not known.
     """
 
     where: str
@@ -121,7 +121,7 @@ class Verdict:
         return {key: getattr(self, key) for key in keys}
 
     def told(self) -> dict[str, Any]:
-        """What else is told of the map, as JSON."""
+        """What else is known of the map, as JSON."""
         told: dict[str, Any] = {
             "where": self.where,
             **(self.axioms.document() if self.axioms else {}),
@@ -131,7 +131,7 @@ class Verdict:
         return told
 
     def lines(self) -> Iterator[str]:
-        """What is wrong, and what else is told, as lines to read."""
+        """What is wrong, and what else is known, as lines to read."""
         if not self.sound:
             broken = [f"violation({rule},{step})" for rule, step in self.violations]
             yield f"{self.where}: {'; '.join(broken + self.faults)}"
@@ -205,9 +205,9 @@ def verdicts(
     """Judge each map by ``check.lp`` and by definition.
 
     A map is held against what was seen, corrected by what the map says was misread: after at most
-    ``noise`` steps, and at most as many as its document allows. With ``every`` the verdict tells of
-    each axiom and default whether the map breaks it. That it does is then no violation, unless it
-    is among the ``demands``, or the document says that the map does not.
+    ``noise`` steps, and at most as many as its document allows. With ``every`` the verdict says for
+    each axiom and default whether the map breaks it. Breaking one is then not a violation, unless
+    it is among the ``demands``, or the document says that the map does not.
 
     Raises:
         InputError: A map is much longer than the experience.
@@ -261,7 +261,7 @@ def verdicts(
             violations = _by_step(one for one in rules | definition if one[0] in kept)
             said = document.claims.get("count", len(document.maps))
             if number == 1 and said != len(document.maps):
-                found.append(f"count is {said}, there are {len(document.maps)} maps")
+                found.append(f"count is {said}, but there are {len(document.maps)} maps")
             if truth is None and "real" in entry:
                 found.append("real: only --truth can tell")
             short = len(at) <= seen.steps
@@ -279,7 +279,7 @@ def _mistaken(
     """Find what is wrong with what a map of so many steps says was misread."""
     wrong = {step for step, _ in misread}
     if wrong and most is None:
-        yield "misread: it is not said how many views may be wrong (noise)"
+        yield "misread: the file does not say how many views may be wrong (noise)"
     elif len(wrong) > (most or 0):
         yield f"misread: {words.number(len(wrong), 'view')}, more than {most}"
     if late := [step for step in wrong if step >= steps]:

@@ -46,7 +46,7 @@ class Layout:
     each as the gateways by which its walk leaves, with the face on their right; ``outer`` is the
     number of the outer one. ``crossing`` has, for a map that is not planar, the links that are not
     in the planar part. ``note`` says that the drawing is plain, if it is: then neither faces nor
-    crossings are told. ``elsewhere`` tells that it is known where places are, but that some are
+    crossings are given. ``elsewhere`` tells that it is known where places are, but that some are
     drawn elsewhere.
     """
 
@@ -75,7 +75,7 @@ def layout(
     ``where`` tells where places are, and what is up. If that is not known of all places, the
     gateway ``ahead`` (by default the first one) leaves to the right of the picture. Fewer ``steps``
     are enough for a small picture. Several components stand side by side, and then no faces are
-    told, because the components share the outer one. The drawing is plain if it is ``late`` before
+    given, because the components share the outer one. The drawing is plain if it is ``late`` before
     there is a better one, or if that would take more work than one drawing may.
     """
     parts = world.parts()
@@ -219,8 +219,8 @@ def _turned(
 def compass(world: TopologicalMap) -> tuple[dict[Place, int], bool]:
     """The direction of each place's slot 0, in slots clockwise from that of the first place.
 
-    It is as if links arrived in the direction in which they leave. It is told, too, whether that is
-    possible for every link.
+    It is as if links arrived in the direction in which they leave. The second result is whether
+    that is possible for every link.
     """
     north = {next(iter(world.stars)): 0}
     for place in (waiting := list(north)):

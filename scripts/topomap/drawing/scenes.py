@@ -117,7 +117,7 @@ def of_instance(seen: Experience, name: str, document: maps.Document) -> list[Sc
         where = f"{document.where}: map {place}"
         last = len(entry["at"]) - 1
         if not 0 <= last <= seen.steps:
-            raise InputError(f"{where}: {last} steps, the instance has {seen.steps}")
+            raise InputError(f"{where}: {last} steps, but the instance has {seen.steps}")
         try:
             corrected = seen.corrected(maps.misread_of(seen, entry)).cut(last)
         except (LookupError, TypeError, ValueError):

@@ -26,7 +26,7 @@ UNKNOWN = 0.02  # the weight of a travel of which nothing is known
 
 
 class Travel(NamedTuple):
-    """A step between two places: its gateways, and its shift and its length if they are told."""
+    """A step between two places: its gateways, and its shift and its length if they are known."""
 
     out: DState
     arrival: DState
@@ -111,7 +111,7 @@ def _in_its_frame(
     """The travels with their shifts turned so that they agree with the compass.
 
     Their second axis may lead north or south, which the order of the gateways tells. Their unit
-    need not be that of the lengths; it is converted if both are told of a travel.
+    need not be that of the lengths; it is converted if both are known of a travel.
     """
     both = [
         abs(travel.shift) / travel.length for travel in travels if travel.shift and travel.length
@@ -139,7 +139,7 @@ def _in_its_frame(
 def _move(travel: Travel, norths: Mapping[Place, complex], slots: int) -> tuple[complex, bool]:
     """How far a travel leads, and whether its length is known; 0 if its direction is not known.
 
-    A way whose ends are not in line is taken for an arc, which is longer than its chord.
+    A way whose ends are not in line is taken to be an arc, which is longer than its chord.
     """
     if travel.shift is not None:
         return travel.shift, True

@@ -53,7 +53,7 @@ STUB = {"shape": "point", "width": "0.06"}
 def _placed(scene: Scene, laid: "Layout | None") -> "nx.MultiGraph[int]":
     """The map as a graph whose nodes have coordinates ``x`` and ``y``, in lengths of links.
 
-    There are none if it is not told where the places are.
+    There are none if it is not known where the places are.
     """
     graph = graph_of(scene)
     for place, (x, y) in _points(laid).items() if laid else ():

@@ -87,7 +87,7 @@ def points_of(environment: Environment) -> dict[Place, Point]:
 
 
 def _straight(environment: Environment) -> list[tuple[str, int, int]] | None:
-    """The pairs of gateways on one path, if they are told."""
+    """The pairs of gateways on one path, if they are known."""
     across = environment.map.across
     if across is None:
         return None

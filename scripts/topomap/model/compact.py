@@ -4,7 +4,7 @@ What is the same in all maps of an experience is computed once. ``TopologicalMap
 definition; tests find the two equal.
 
 A gateway, or a direction without a gateway, is the number ``place * slots + slot``; a place is the
-step of its first visit. Where it is told which gateways are on one path, the direction behind a
+step of its first visit. Where it is known which gateways are on one path, the direction behind a
 gateway G that ends its path is -1 - G.
 """
 

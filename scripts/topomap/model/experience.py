@@ -23,7 +23,7 @@ Slots = tuple[int, int]  # the slots of two gateways of one visit, the lower one
 
 @dataclass(frozen=True)
 class Step:
-    """What is told of one step, which may not be known completely while it is being told.
+    """What is known of one step, which may be incomplete while its facts arrive.
 
     ``turn`` is None for step 0, where the exploration begins, and for a step that is not a travel:
     the beginning of a new log (``start``), or a second look (``look``). ``marks`` are those of
@@ -44,7 +44,7 @@ class Step:
     start: bool = False
     look: bool = False
     things: frozenset[tuple[str, str]] = frozenset()  # one of MARKER, and the name
-    straight: frozenset[Slots] | None = None  # None if no pairs of gateways are told
+    straight: frozenset[Slots] | None = None  # None if no pairs of gateways are given
 
 
 @dataclass(frozen=True, init=False)
@@ -61,8 +61,8 @@ class Experience:
     More can be known besides views (semantics: "A compass", "Odometry", "Asserted, and ruled out").
     ``compass[t]`` is the compass slot to which the gateway points where the agent stands after step
     t. ``shifts[t - 1]`` is how far step t moved the agent, and ``lengths[t - 1]`` is how long it
-    was. An entry is None for a step of which it is not told, and the whole is empty if it is told
-    of no step. ``same`` and ``apart`` are pairs of visits that are known to be of one place, or of
+    was. An entry is None for a step without such a value, and the whole is empty if no step has
+    one. ``same`` and ``apart`` are pairs of visits that are known to be of one place, or of
     two. Shifts may be wrong by ``drift`` percent of the way, and lengths by ``stretch`` percent.
     ``assumed`` is what else is taken for granted (``topomap.assume``): the terms of statements,
     each with whether it holds.
@@ -138,11 +138,11 @@ class Experience:
             picks: The steps after which the marker is taken up, or such pairs.
             markers: The steps after which the marker is seen, or such pairs.
             compass: The compass slot of the gateway where the agent stands after each step, from 0,
-                or None; by default it is told of no step.
+                or None; by default no step has one.
             shifts: How far each step, from 1, moved the agent, as (x, y) in whole numbers of any
-                unit, or None; by default it is told of no step.
-            lengths: How long each step was, in whole numbers of any unit, or None; by default it is
-                told of no step.
+                unit, or None; by default no step has one.
+            lengths: How long each step was, in whole numbers of any unit, or None; by default no
+                step has one.
             same: Pairs of steps after which the agent was at one place.
             apart: Pairs of steps after which the agent was at two places.
             drift: By how many percent of the way shifts may be wrong.
@@ -338,7 +338,7 @@ class Experience:
         return [option for one in told for option in ("-c", one)]
 
     def compass_told(self) -> int:
-        """Count the visits of which the compass is told.
+        """Count the visits at which the compass is known.
 
         Returns:
             Their number.
@@ -436,8 +436,8 @@ class Experience:
     def marker(self, name: str | None = None) -> tuple[tuple[int, bool] | None, ...]:
         """Tell what is known of a marker after each step.
 
-        (Whoever takes a marker up sees it. After one step, a marker is taken up before it is put
-        down.)
+        (An agent that takes a marker up sees it. After one step, a marker is taken up before it is
+        put down.)
 
         Parameters:
             name: The name of the marker; None for the one that has none.
@@ -518,7 +518,7 @@ class Experience:
         return "\n".join(lines) + "\n"
 
     def facts_of(self, step: int, number: int | None = None) -> list[str]:
-        """The facts that are told of a step, apart from pairs of steps.
+        """The facts about a step, apart from pairs of steps.
 
         Parameters:
             step: The step.
@@ -545,7 +545,7 @@ class Experience:
         return line
 
     def _pairs_told(self, step: int) -> list[Slots]:
-        """The facts about the pairs of gateways that are told of a visit.
+        """The facts about the pairs of gateways of a visit.
 
         If no gateways are on one path at any visit, one fact says of a gateway of step 0 that it
         ends its path. Without this fact, opposite gateways would be taken to be on one path.
@@ -712,12 +712,12 @@ T = TypeVar("T")
 
 
 def _told(values: tuple[T | None, ...]) -> tuple[T | None, ...]:
-    """Keep the values, or nothing if none of them is told."""
+    """Keep the values, or nothing if all of them are None."""
     return values if any(value is not None for value in values) else ()
 
 
 def _longer(values: tuple[T | None, ...], many: int, more: T | None) -> tuple[T | None, ...]:
-    """Extend values, which are empty if none is told, to a number of steps and one value more."""
+    """Extend values, which are empty if all are None, to a number of steps and one value more."""
     if not values and more is None:
         return ()
     return (*(values or (None,) * many), more)
@@ -726,7 +726,7 @@ def _longer(values: tuple[T | None, ...], many: int, more: T | None) -> tuple[T 
 def _each(
     name: str, given: Iterable[T | None], many: int, plain: Callable[[str, T], T]
 ) -> tuple[T | None, ...]:
-    """Check that there is a value or None for each step; return nothing if none is told."""
+    """Check that there is a value or None for each step; return nothing if all are None."""
     values = tuple(
         None if value is None else plain(f"{name}[{number}]", value)
         for number, value in enumerate(collection(name, given))

@@ -126,13 +126,14 @@ class Fault:
 class Facts:
     """The facts of an instance, each with the line in which it stands first.
 
-    ``views[t]``, ``turns[t]`` and ``landmarks[t]`` have what is told of step t, ``marks`` the steps
-    of each name of MARKER, and ``steps`` each step of which anything is told. ``known[name][t]``
-    has the numbers that are told by compass/2, shift/3, length/2 or straight/3, ``pairs[name]`` the
-    pairs of same/2 or apart/2, ``rests[name]`` the steps of start/1 or look/1, and ``things`` what
-    is done with markers that have names. ``unread`` is the number of statements that are not facts
-    of an instance. ``drift`` and ``stretch`` are the percents by which shifts and lengths may be
-    wrong: multiplied by them, what is told must still be a number of clingo.
+    ``views[t]``, ``turns[t]`` and ``landmarks[t]`` have what is given for step t, ``marks`` the
+    steps of each name of MARKER, and ``steps`` each step about which anything is given.
+    ``known[name][t]`` has the numbers that are given by compass/2, shift/3, length/2 or straight/3,
+    ``pairs[name]`` the pairs of same/2 or apart/2, ``rests[name]`` the steps of start/1 or look/1,
+    and ``things`` what is done with markers that have names. ``unread`` is the number of statements
+    that are not facts of an instance. ``drift`` and ``stretch`` are the percents by which shifts
+    and lengths may be wrong: multiplied by them, what is given must still be a number that clingo
+    can hold.
     """
 
     slots: dict[int, int] = field(default_factory=dict)
@@ -329,7 +330,7 @@ class Facts:
             yield Fault("it is said to be at another place than itself", told_apart, step)
 
     def _pair_faults(self, step: int, slots: int | None, noisy: bool) -> Iterator[Fault]:
-        """Find what is wrong with the pairs of gateways that are told of a step."""
+        """Find what is wrong with the pairs of gateways that are given for a step."""
         view = self.views.get(step, {})
         # For each slot the other slots of its pairs, with lines.
         told: dict[int, dict[int, tuple[int, str]]] = {}
@@ -386,12 +387,12 @@ class Facts:
         )
 
     def _pairs_of(self, steps: range) -> list[list[Any]]:
-        """The pairs of gateways that are told of each step; nothing if none is told."""
+        """The pairs of gateways that are given for each step; nothing if none is given."""
         told = self.known["straight"]
         return [[*told.get(step, ())] for step in steps] if told else []
 
     def _each(self, name: str, steps: range) -> list[Any]:
-        """What is told of each step, or None: a number, or all of them if there are several."""
+        """What is given for each step, or None: a number, or all of them if there are several."""
         told = (next(iter(self.known[name].get(step, ())), None) for step in steps)
         return (
             [one[0] if one and len(one) == 1 else one for one in told] if self.known[name] else []

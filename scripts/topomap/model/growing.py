@@ -1,4 +1,4 @@
-"""Sequences that grow at their end; a longer one shares its items with the shorter one."""
+"""Sequences that grow at their end; a longer one shares its items with a shorter one."""
 
 from collections.abc import Iterator, Sequence
 from itertools import islice

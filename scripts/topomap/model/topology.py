@@ -88,7 +88,7 @@ class TopologicalMap:
     def opposite(self, gateway: Gateway) -> Gateway:
         """The direction on the opposite side of the place, with or without a gateway.
 
-        Where it is told which gateways are on one path (``across``), the direction of a path that
+        Where it is known which gateways are on one path (``across``), the direction of a path that
         ends at gateway S is the number -1 - S, because another path may have a gateway in the
         opposite slot.
         """
@@ -163,7 +163,7 @@ class TopologicalMap:
     def beside(self, path: Sequence[Gateway]) -> tuple[set[Place], set[Place]]:
         """The places to the right and to the left of a path (the SSH's boundary regions).
 
-        They are the places to which one comes who leaves the path to that side and walks straight
+        They are the places that one reaches by leaving the path to that side and walking straight
         on. A gateway in the very slot of the heading, or in the opposite slot, is on neither side.
         """
         right: set[Place] = set()

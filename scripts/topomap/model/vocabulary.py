@@ -19,7 +19,7 @@ PARTS = {
     "no_path_axiom": "a path may contain a place twice, and may be circular",
 }
 OPTIMIZING = {"genus", "exceptions", "minimal"}
-RELAXING = ("no_path_axiom",)  # parts that take a default away
+RELAXING = ("no_path_axiom",)  # parts that remove a default
 PRUNING = ("planar", "perpendicular")  # a map that has them had them after each step
 CHOSEN = (*PRUNING, *RELAXING)  # the parts that draw, explore and report accept
 DEMANDS = tuple(part for part in PARTS if part not in (*OPTIMIZING, *RELAXING))

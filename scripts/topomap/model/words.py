@@ -19,10 +19,10 @@ RULES = {
     "landmark": "other landmarks are seen there",
     "marker": "the marker is seen elsewhere, or lies there and is not seen",
     "compass": "the compass points elsewhere there",
-    "odometry": "it is too far away by its odometry",
+    "odometry": "it is too far away by odometry",
     "apart": "it is known to be another place",
     "same": "it is known to be the place of an earlier step",
-    "length": "the way was of another length",
+    "length": "the way had another length",
     "twice": "a place would be on a path twice",
     "circular": "a path would be circular",
     "planarity": "the gateways are not on one face",
@@ -97,7 +97,7 @@ def known(experience: "Experience", step: int) -> str:
     told = [f"{name} {', '.join(map(str, numbers))}" for name, numbers in measured]
     for name, pairs in (
         ("same place as", experience.same),
-        ("another place than", experience.apart),
+        ("not the same place as", experience.apart),
     ):
         steps = sorted(earlier for earlier, later in pairs if later == step)
         told += (
@@ -114,7 +114,7 @@ def markers(experience: "Experience", at: Sequence[Gateway]) -> str:
     )
 
 
-def disbelieved(experience: "Experience", misread: "Sequence[Misread]") -> str:
+def contradicted(experience: "Experience", misread: "Sequence[Misread]") -> str:
     """What was misread, step by step; ``experience`` is the corrected one."""
     told: dict[int, list[str]] = {}
     for step, what in misread:

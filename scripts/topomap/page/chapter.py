@@ -31,7 +31,7 @@ def given_maps(file: str, path: str, whole: Experience, query: Query) -> list[Sc
     """Read the maps of an instance in a file, which the page is to show.
 
     Raises:
-        InputError: They are none of the hypotheses that the page counts. One line.
+        InputError: They are not among the hypotheses that the page counts. One line.
     """
     cut = whole.cut(LARGEST if query.horizon is None else query.horizon)
     demands = sorted(query.parts)

@@ -1,7 +1,7 @@
 """How ambiguous a walk in a known world is.
 
-It is counted how many maps live after each step of the walk. Then it is asked which further walk
-leaves one of them, and whether the real one is preferred.
+It counts how many maps remain after each step of the walk. Then the questions are which further
+walk leaves only one of them, and whether the real one is preferred.
 """
 
 import contextlib
@@ -30,7 +30,7 @@ from topomap.worlds.senses import Senses
 KNOWLEDGE = "all", "planar", "compass"  # what is known of maps besides views: nothing; a property
 KINDS = (*KNOWLEDGE, "closed")
 MOST_LIVING = 100  # maps of which the walk is sought that leaves one
-MOST_WORK = 20_000_000  # moves of maps, in the search for a walk that leaves one
+MOST_WORK = 20_000_000  # moves of maps, in the search for a walk that leaves only one
 
 
 @contextlib.contextmanager
@@ -94,7 +94,7 @@ def until_all(world: TopologicalMap, start: Place, seed: int, most: int) -> list
 
 @dataclass(frozen=True)
 class Counted:
-    """How many maps live after each step from 0, and how many of them are closed.
+    """How many maps remain after each step from 0, and how many of them are closed.
 
     If they were not counted to the end, ``why`` says why: "maps" means that after the next step
     there are more than ``most``; else it is what cut the work. ``level`` has the maps after the
@@ -110,11 +110,11 @@ class Counted:
 
     @property
     def living(self) -> Sequence[Living] | None:
-        """The maps that live at the end; None if they were not counted to the end."""
+        """The maps that remain at the end; None if they were not counted to the end."""
         return None if self.why else self.level
 
     def document(self) -> dict[str, Any]:
-        """What is told of it."""
+        """What is known of it, as JSON."""
         stopped = len(self.maps) if self.why else None
         return {
             "maps": list(self.maps),
@@ -221,7 +221,7 @@ class Settled:
     why: str | None = None
 
     def document(self) -> dict[str, Any]:
-        """What is told of it."""
+        """What is known of it, as JSON."""
         found = self.refuted
         walk = found.walk if found and self.kind == "walk" else None
         return {
@@ -241,7 +241,7 @@ class Settled:
 
 
 def settled(walk: Walk, kind: str, counted: Counted, seconds: float, watch: Watch) -> Settled:
-    """The further walk that leaves one of the maps of one of KINDS."""
+    """The further walk that leaves only one of the maps of one of KINDS."""
     compass = kind == "compass"
     experience, truth = walk.seen(compass)
     found: list[tuple[DState, ...]] = []
@@ -271,7 +271,8 @@ def settled(walk: Walk, kind: str, counted: Counted, seconds: float, watch: Watc
         return Settled("others", met, many, others) if some else Settled(None, met, why=why)
     if others == 0:
         return Settled("one", met, many, 0)
-    # The unfolding lives with whatever is known, but it is not closed if the world is not a tree.
+    # The unfolding is consistent with whatever else is known, but it is not closed if the world is
+    # not a tree.
     first = [unfolding(experience)] if kind != "closed" else []
     tried = [at for at in dict.fromkeys([*first, *found]) if at != truth][:MOST_LIVING]
     if not tried:
@@ -309,7 +310,7 @@ class Preferred:
     why: str | None = None
 
     def document(self) -> dict[str, Any]:
-        """What is told of it."""
+        """What is known of it, as JSON."""
         return {
             "kind": self.kind,
             "maps": self.maps,

@@ -218,7 +218,7 @@ def reduced(
 
     Parameters:
         given: The program of the reasons. With all of them in force there is no map.
-        tell: A function that is told the first reasons that suffice, and whether to go on.
+        tell: A function that takes the first reasons that suffice, and returns whether to go on.
         most: The largest number of reasons that is wanted. An order is left as soon as it is known
             to need more.
         orders: The numbers of the orders to try.

@@ -124,8 +124,8 @@ class Explanation:
 
     It has the verdict; the reasons for it in the first ``horizon`` steps, or what is ``in_the_way``
     of a closed map; or maps in which the statement holds and does not hold. ``gathered`` tells
-    whether reasons are whole rules, or all that is told of one step; ``fewest`` tells whether it is
-    proved that no fewer of these suffice.
+    whether reasons are whole rules, or all that is known of one step; ``fewest`` tells whether it
+    is proved that no fewer of these suffice.
     """
 
     verdict: str | None = None
@@ -351,7 +351,7 @@ class Explainer:
         breaks: tuple[str, ...] = (),
         symbols: Sequence[clingo.Symbol] = (),
     ) -> Reason:
-        """Put a reason into words, with what a map is like that breaks it, if that is given."""
+        """Put a reason into words, and describe a map that breaks it, if such a map is given."""
         if not self.found.gathered or not is_gathered(name):
             told = _told(experience, name, at, symbols) if at else _plainly(experience, name)
             return Reason(name, told, at, also)
@@ -381,7 +381,7 @@ def _one(
 def _told(
     experience: Experience, name: str, at: tuple[DState, ...], symbols: Sequence[clingo.Symbol]
 ) -> Told:
-    """Put a reason into words, spelt out from a map that breaks it."""
+    """Put a reason into words, described from a map that breaks it."""
     common = [
         [a.number for a in atom.arguments]
         for atom in symbols

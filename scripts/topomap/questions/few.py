@@ -16,7 +16,7 @@ from topomap.questions.reasons import of_one_step
 from topomap.solver.programs import Program
 from topomap.solver.threads import Put
 
-MOST = 5  # if more single reasons are needed than gathered ones, the gathered ones are told
+MOST = 5  # if more single reasons are needed than gathered ones, the gathered ones are given
 # Orders in which single reasons, parts of gathered reasons, and gathered reasons are tried; and
 # the solver's conflicts to try one reason.
 ORDERS, PARTS, GATHERED = (NEAR, 0, 2), (NEAR, 0, 2, 3, 4, 5), (0, 1)

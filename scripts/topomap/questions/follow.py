@@ -1,4 +1,4 @@
-"""An experience that is followed, and what is told after each step."""
+"""An experience that is followed, and what is reported after each step."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -21,12 +21,12 @@ from topomap.solver.online import LivingMap, OnlineSolver, ReadMap, Status
 from topomap.solver.stepwise import Asked
 
 SHOWN = 3  # the largest number of best maps in the text
-WAY = 201  # so many of the last dstates of a map are told: all those of 200 steps
+WAY = 201  # so many of the last dstates of a map are shown: all those of 200 steps
 
 
 @dataclass(frozen=True)
 class StepAnswer:
-    """What is told after a step of an experience.
+    """What is reported after a step of an experience.
 
     It has the status; what is ``certain`` by now, and what is ``new`` since the step before; the
     ``plan`` of what to do next, if one was found; and why something is missing.
@@ -50,7 +50,7 @@ class StepAnswer:
         )
 
     def lines(self, seconds: float) -> Iterator[str]:
-        """What is told, as lines to read; it took so many seconds."""
+        """The report as lines to read; it took so many seconds."""
         status = self.status
         if status.none_since is not None:
             since = f" since step {status.none_since}" if status.none_since < status.step else ""
@@ -91,7 +91,7 @@ class StepAnswer:
             yield f"  partial: {self.fault}"
 
     def document(self) -> dict[str, Any]:
-        """What is told, as JSON; None stands for what is open."""
+        """The report as JSON; None stands for what is open."""
         status, made, new = self.status, self.plan, self.new
         settled = status.all_best or bool(status.maps)
         first = max(0, status.step + 1 - WAY)
@@ -133,7 +133,7 @@ class Following:
     """An experience that goes on, or is taken back, as its record says.
 
     It tells what is certain after each step, with or without the ``path_axiom``. With ``marker``
-    the agent carries a marker. If there are more than ``most`` hypotheses, only that is told.
+    the agent carries a marker. If there are more than ``most`` hypotheses, only that is reported.
     """
 
     def __init__(

@@ -1,4 +1,4 @@
-"""What a learner of automata without reset makes of a world: AALpy's hW, from the extra ``peers``.
+"""A learner of automata without reset in a world: AALpy's hW, from the extra ``peers``.
 
 It walks through the world as a robot does, and ends with one automaton. An input is a turn; if
 there is a gateway, the agent leaves by it, and sees what is beyond, and if there is none, it stays
@@ -23,12 +23,12 @@ MOST_INPUTS = 500_000
 PATIENCE = 4  # times as long as other parts of the work may take, a learner may
 TESTED = 200  # random inputs after which a hypothesis is believed: AALpy's default
 BLOCKED = "no gateway there"
-INPUTS, ALIKE = "inputs", "all alike"  # why a learner is ended, but for lack of time
+INPUTS, ALIKE = "inputs", "all alike"  # why a learner is stopped, other than by lack of time
 
 
 @dataclass(frozen=True)
 class Learned:
-    """What a learner of automata came to.
+    """The result of a learner of automata.
 
     It gave so many ``inputs``, of which so many were ``moves`` along a way, and so many tested a
     hypothesis, which was then kept or refuted. It learned so many ``states``; the world has so many
@@ -47,7 +47,7 @@ class Learned:
     why: str | None = None
 
     def document(self) -> dict[str, Any]:
-        """What is told of it."""
+        """What is known of it, as JSON."""
         return {**vars(self)}
 
 
@@ -75,10 +75,10 @@ def learned(
         dstate = start
 
         def pre(self) -> None:
-            """A reset, of which there is none."""
+            """A reset, which this agent does not have."""
 
         def post(self) -> None:
-            """The end, of which nothing is to be done."""
+            """The end of a test, where nothing need be done."""
 
         def step(self, turn: int) -> Hashable:
             watch.tick()
@@ -130,7 +130,7 @@ def learned(
 
 
 class _Enough(Exception):
-    """A learner is ended; the message says why."""
+    """The learner is stopped; the message says why."""
 
 
 @contextmanager

@@ -1,4 +1,4 @@
-"""What is told of a further walk, as lines to read and as JSON."""
+"""A further walk, as lines to read and as JSON."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -12,7 +12,7 @@ from topomap.questions.candidates import Candidates
 from topomap.questions.explore import Plan, Untold
 from topomap.questions.standings import Prediction
 
-MOST_GROUPS, MOST_PAIRS, LONGEST = 6, 12, 24  # the largest numbers that are told in words
+MOST_GROUPS, MOST_PAIRS, LONGEST = 6, 12, 24  # the largest numbers of items in words
 FAULTS = {
     "steps": "no walk of at most {steps} steps does better, a longer one may",
     "effort": "longer walks may do better",

@@ -1,7 +1,7 @@
-"""Reasons in words: what a map would be like that breaks one rule, spelt out from that map.
+"""Reasons in words: what would be wrong in a map that breaks one rule, described from that map.
 
-The map may break other rules, too; a gateway of it may have two links. So what is said goes by the
-visits, as the rules in ``encodings/theory/`` do, and not by the links.
+The map may break other rules, too; a gateway of it may have two links. So the words are about the
+visits, as the rules in ``encodings/theory/`` are, and not about the links.
 """
 
 import re
@@ -111,7 +111,7 @@ class Broken:
     def opposite(self, heading: DState) -> int:
         """The slot opposite to a gateway, or from such a slot the gateway again.
 
-        Where it is told which gateways are on one path, it is -1 - S for a path that ends at
+        Where it is known which gateways are on one path, it is -1 - S for a path that ends at
         gateway S.
         """
         return self._world.opposite(heading)[1]
@@ -374,8 +374,8 @@ def numbers_of(name: str) -> tuple[int, ...]:
 def gathered(name: str) -> tuple[str, ...]:
     """The gathered reasons of which a single one is a part; it needs all of them.
 
-    They are all that is told of a step, or a whole rule; or the reason itself, if it is about one
-    thing that is told.
+    They are all that is known of a step, or a whole rule; or the reason itself, if it is about a
+    single fact.
     """
     kind = kind_of(name)
     if kind in BY_STEP:
@@ -389,7 +389,7 @@ def is_gathered(name: str) -> bool:
 
 
 def of_one_step(name: str) -> bool:
-    """Tell whether a reason is gathered from all that is told of one step."""
+    """Tell whether a reason is gathered from all that is known of one step."""
     return kind_of(name) in BY_STEP and len(numbers_of(name)) == 1
 
 

@@ -1,4 +1,4 @@
-"""What is known of an experience that is told line by line.
+"""What is known of an experience that arrives line by line.
 
 Each line is a step, in JSON or in facts, or takes steps back. It makes a new record from what is
 known, so that a line with a fault changes nothing.
@@ -143,7 +143,7 @@ class Record:
         """What holds after the last step.
 
         Raises:
-            LineFault: What is told of markers is impossible, or a sum of shifts or lengths is too
+            LineFault: What is said of markers is impossible, or a sum of shifts or lengths is too
                 large for clingo.
         """
         out, far = self._states[-1] if self.done else (frozenset(), 0)
@@ -240,7 +240,7 @@ class Record:
     def _on_one_path(self, step: int, one: int, other: int) -> "Record":
         """Add two gateways of a visit that are on one path.
 
-        A gateway that ends its path is told as a pair with itself.
+        A gateway that ends its path is given as a pair with itself.
         """
         record = self._seen(step)
         assert record.slots is not None
@@ -328,7 +328,7 @@ class Record:
         Raises:
             LineFault: It is impossible.
         """
-        # Null means that it is not told.
+        # Null means that it is not given.
         data = {key: value for key, value in data.items() if value is not None}
         begins = self.slots is None
         known = {"slots" if begins else "turn", "view", "landmarks", *MARKER, *KNOWN_KEYS, *RESTS}

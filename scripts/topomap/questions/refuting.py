@@ -1,4 +1,4 @@
-"""Which further walk in a known world leaves only the real map of those that live, if any does.
+"""Which further walk in a known world refutes all remaining maps but the real one, if any does.
 
 A further walk refutes a map if the map predicts something else than what is seen. Beyond a pending
 gateway a map predicts nothing, but what comes of it there is not free: whoever goes back the way by
@@ -22,7 +22,7 @@ State = tuple[Gateway, tuple[int, ...]]
 
 
 class Lineage:
-    """A map, and all that may come of it."""
+    """A map, and all maps that may extend it."""
 
     def __init__(self, standing: Standing):
         self.standing, self.world = standing, standing.world

@@ -99,7 +99,7 @@ class Outcome:
         return self.end == "settled" and bool(self.truth)
 
     def document(self) -> dict[str, Any]:
-        """What is told of the exploration, as JSON."""
+        """The exploration as JSON."""
         return {
             "places": len(self.world.stars),
             "ways": len(self.world.links) // 2,
@@ -113,7 +113,7 @@ class Outcome:
         }
 
     def lines(self, name: str) -> Iterator[str]:
-        """What is told of the exploration, as lines to read; ``name`` is the environment's."""
+        """The exploration as lines to read; ``name`` is the environment's."""
         world = self.world
         ways = len(world.links) // 2
         signs = number(len(world.landmarks), "sign")

@@ -81,7 +81,7 @@ class Prediction:
 
     It has the gateways clockwise from the one of the arrival, the landmarks, and whether the marker
     is there; the compass slot of the gateway of the arrival, if there is a compass; and which
-    gateways are on one path, if that is told (each pair in both orders).
+    gateways are on one path, if that is known (each pair in both orders).
     """
 
     view: frozenset[int]

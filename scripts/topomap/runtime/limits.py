@@ -1,6 +1,6 @@
 """The bounds of the options of the command and of the arguments of the public functions.
 
-They are apart from what does the work, so that help, and the message about a mistyped call, need
+They are separate from what does the work, so that help, and the message about a mistyped call, need
 not wait for the solver.
 """
 

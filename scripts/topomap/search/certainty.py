@@ -23,7 +23,7 @@ Part = tuple[list[int], int]  # visits in ascending order, and how many of the f
 
 
 class Certain:
-    """What holds in all hypotheses, told of steps.
+    """What holds in all hypotheses, in terms of steps.
 
     ``same`` has pairs of steps after which the agent was at one place, ``new`` steps that came to a
     place for the first time, and ``linked`` gateways that are joined.
@@ -74,8 +74,8 @@ class Change:
     """What a step made certain.
 
     Two visits of ``joined`` are now of one place if they are of different parts of one group; if a
-    group has one part only, all its visits are of one place. ``gone`` is what is now told of other
-    steps.
+    group has one part only, all its visits are of one place. ``gone`` is what is now stated of
+    other steps.
     """
 
     joined: tuple[tuple[Part, ...], ...] = ()
@@ -354,7 +354,7 @@ class Certainty:
     def _linked(self, step: int) -> Linked | None:
         """The link of a travel, if one of its ends was certainly seen before.
 
-        It is told of the first visits there.
+        It is stated of the first visits there.
         """
         turn = self._told.steps[step].turn
         if turn is None:

@@ -49,7 +49,7 @@ class Evidence:
         self._told = bool(told)
 
     def __bool__(self) -> bool:
-        """Whether anything is told."""
+        """Whether anything else is known."""
         return self._told
 
     def refuses(self, one: int, other: int, turn: int) -> str | None:

@@ -74,7 +74,7 @@ class Hypothesis:
         self.stars: list[Face] = []  # the place that each step would make, counter-clockwise
         self.views: dict[int, int] = {}  # for each gateway, the number of what is seen from it
         numbers: dict[Any, int] = {}
-        # The compass is a part of the view if it is told of each visit, and exact. What is seen
+        # The compass is a part of the view if it is known at each visit, and exact. What is seen
         # from the gateways of a visit is computed once for all visits that see the same.
         north = experience.compass_told() == experience.steps + 1 and not experience.tolerance
         known: dict[Any, list[tuple[int, int]]] = {}
@@ -117,7 +117,7 @@ class Hypothesis:
         self._add_place(0)
 
     def _told_straight(self, step: int) -> frozenset[Slots]:
-        """The pairs of gateways of a visit that are told to be on one path."""
+        """The pairs of gateways of a visit that are known to be on one path."""
         told = self.experience.straight
         return told[step] if told else frozenset()
 

@@ -1,4 +1,4 @@
-"""The hypotheses that live while an experience goes on.
+"""The hypotheses that remain while an experience goes on.
 
 This is the paper's search (Figure 2), breadth-first, without knowledge of the steps to come. Each
 hypothesis is a map (``Form``) and the last visit of its way (``Visit``), which knows the visit
@@ -88,7 +88,7 @@ class Star:
 
 
 class Told:
-    """What is told of the steps so far, and what follows from that alone.
+    """What is known of the steps so far, and what follows from that alone.
 
     It grows with each step, and shrinks when steps are taken back.
     """

@@ -104,7 +104,7 @@ class Merging:
     def counts(self, watch: Watch | None = None) -> Iterator[int]:
         """The number of hypotheses after each step, from 0.
 
-        Hypotheses of which it is already known that no map comes of them are left out; the last
+        Hypotheses that are already known to lead to no map are left out; the last
         number is that of the maps.
         """
         level: dict[Key, Counted] = {}

@@ -1,6 +1,6 @@
 """Which default of the theory, or which part, stands in the way of a closed map.
 
-Each alone is taken away, and a closed map is looked for, within a small budget of counted work.
+Each alone is removed, and a closed map is looked for, within a small budget of counted work.
 """
 
 from collections import Counter
@@ -15,11 +15,11 @@ from topomap.runtime.watch import Watch
 from topomap.solver.programs import Program, calls
 from topomap.solver.threads import Put
 
-# The budget for each thing that is taken away: the largest number of conflicts of clingo, and the
+# The budget for each thing that is removed: the largest number of conflicts of clingo, and the
 # largest number of pairs of visits that look alike, with which the ground program grows.
 CONFLICTS, PAIRS = 2_000, 1_000
 PATH_AXIOM, BOUND = "path_axiom", "bound"
-# What is taken away, in words, with the option that does so, or that is left out.
+# What is removed, in words, with the option that removes it, or that is left out.
 WORDS = {
     PATH_AXIOM: "the path axiom there is one: --no-path-axiom",
     "boundary": "--boundary there is one",

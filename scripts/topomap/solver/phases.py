@@ -96,8 +96,8 @@ def found(
     """Find facts for ``phases/topomap.lp`` that hold in every map for which the query asks.
 
     ``folder`` has the encodings. ``heed`` is called between two calls of clingo. The controls that
-    it gets may be interrupted; then less is found, but it is true. ``say`` is told what is being
-    done.
+    it gets may be interrupted; then less is found, but it is true. ``say`` is called with what is
+    being done.
     """
     bounded, square = _bounded(experience, query), _square(experience, query)
     if query.horizon is not None:

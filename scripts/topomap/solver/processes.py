@@ -1,6 +1,6 @@
 """Processes of this machine that share work.
 
-A worker is a Python process of its own. It is told through a pipe where it finds modules, and then
+A worker is a Python process of its own. Through a pipe it learns where to find modules, and then
 what to do. multiprocessing would run the script of the user once more, and would start a process of
 its own besides, which lets Ctrl-C through.
 """
@@ -81,9 +81,9 @@ class Processes:
 
     def _hire(self) -> None:
         ours, theirs = Pipe()
-        # -P: the files in this folder are no modules, unless they are for this process, too.
+        # -P: the files in this folder are not modules, unless they are for this process, too.
         call = [get_executable(), "-P", "-c", WORKER, str(theirs.fileno())]
-        # From the beginning of the worker, Ctrl-C in the terminal reaches this process alone.
+        # From the start of the worker, Ctrl-C in the terminal reaches this process alone.
         before = signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGINT])
         try:
             process = subprocess.Popen(call, stdin=subprocess.PIPE, pass_fds=[theirs.fileno()])

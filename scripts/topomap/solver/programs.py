@@ -52,7 +52,7 @@ def control(
 
 
 def beyond(experience: Experience) -> list[str]:
-    """The files of encodings/paper/ for what is told that the paper does not consider."""
+    """The files of encodings/paper/ for the facts that the paper does not consider."""
     needed = {
         "marker": experience.drops or experience.things,
         "logs": experience.parted,

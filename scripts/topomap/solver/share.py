@@ -16,7 +16,7 @@ LOST = "workers were lost"
 
 
 class Crew(Protocol):
-    """Those who do the work; used as a context, a crew dismisses its workers at the end."""
+    """The workers that share the work; used as a context, a crew dismisses them at the end."""
 
     def each(
         self, work: Work[Unit, Result], units: Sequence[Unit], watch: Watch

@@ -52,7 +52,7 @@ class Stepwise:
     def __init__(self, slots: int, first: Step, asked: Asked):
         """Begin at the start, where the first view was seen.
 
-        Without the path axiom, or if it is told which gateways are on one path, the best maps are
+        Without the path axiom, or if it is known which gateways are on one path, the best maps are
         found anew after each step, because the program does not know the number of paths then, or
         what is left and right of them. If bearings are not exact, there is no program, and the
         hypotheses are those of the search.
@@ -363,7 +363,7 @@ class Stepwise:
     def _linked(self, first: dict[int, tuple[int, int]]) -> Iterator[Linked]:
         """The links of steps that certainly ended at places seen before.
 
-        They are told of the first visits there.
+        They are stated of the first visits there.
         """
         for step, turn in enumerate(self.experience.turns, 1):
             if turn is None:

@@ -104,7 +104,7 @@ class _Worker:
 
 
 class _Life:
-    """An object to which only a running thread refers: once it is gone, the thread has ended."""
+    """An object to which only a running thread refers: when it is gone, the thread has ended."""
 
 
 class _Run:
@@ -192,7 +192,7 @@ class _Run:
 
 
 def in_thread(program: Called, watch: Watch, work: Callable[[Put], None]) -> Iterator[Any]:
-    """Give what ``work`` puts, in a thread of its own; putting returns False if it should end.
+    """Give what ``work`` puts, in a thread of its own; ``put`` returns False to end the work.
 
     Raises:
         Stopped: The time limit has passed, or memory ran out.

@@ -13,7 +13,7 @@ MOST_PLACES = 20_000  # the same holds with more places
 
 
 class Census(NamedTuple):
-    """What is told of a world.
+    """What is known of a world.
 
     ``planar`` tells whether it is embedded in the plane with the order of its slots. ``path_axiom``
     tells how it breaks the path axiom, or is None. ``exceptions`` is the number of exceptions to
@@ -54,7 +54,7 @@ class Census(NamedTuple):
             f"planar as embedded: {_yes(self.planar)}; path axiom: "
             f"{self.path_axiom or 'holds'}; exceptions to consistent boundaries: "
             f"{'not counted' if self.exceptions is None else self.exceptions}; perpendicular: "
-            f"{'not told' if self.perpendicular is None else _yes(self.perpendicular)}"
+            f"{'not computed' if self.perpendicular is None else _yes(self.perpendicular)}"
         )
         views, dstates = words.number(self.views, "kind"), words.number(self.dstates, "dstate")
         yield (

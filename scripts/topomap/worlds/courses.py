@@ -247,7 +247,7 @@ def _pairs(plan: Plan, at: Layout) -> dict[Gateway, Gateway] | None:
 
 
 def shares(ends: Iterable[tuple[Place, Place]]) -> Callable[[Place, Place], float]:
-    """Tell up to which share of a way between two places its direction may be taken.
+    """Tell up to which share of a way between two places its direction may be measured.
 
     It is the middle of the way if there are several ways between the places, because these are
     apart in the middle, but meet at the other end. Otherwise it is the whole way.

@@ -100,8 +100,8 @@ def grid(rows: int, columns: int, kind: str = "grid") -> Environment:
     """Make a grid of places (row, column) with four slots, where slot 0 is north.
 
     On a ``cylinder`` each row is a ring, and on a ``torus`` each column is a ring, too. With
-    ``crescents``, each two columns, beginning with the first, are joined by a way round their
-    northern ends; so they are one path, which meets each row twice.
+    ``crescents``, the columns, beginning with the first, are joined in pairs by ways round their
+    northern ends; so each pair is one path, which meets each row twice.
     """
     links: dict[Gateway, Gateway] = {}
     for row in range(rows):
@@ -132,9 +132,9 @@ def _squares(links: Iterable[Gateway]) -> dict[Gateway, Move]:
 
 
 def maze(rows: int, columns: int, thin: float, seed: int) -> Environment:
-    """Make a connected grid from which some ways are taken away.
+    """Make a connected grid from which some ways are removed.
 
-    ``round(thin * n)`` of its n ways are taken away in a random order, with the seed, except those
+    ``round(thin * n)`` of its n ways are removed in a random order, with the seed, except those
     without which it would not be connected.
     """
     links = dict(grid(rows, columns).map.links)
@@ -238,7 +238,7 @@ def environment(
     """Make the world of a kind.
 
     The kinds are ``grid``, ``cylinder``, ``torus``, ``crescents``, ``maze`` (from which the share
-    ``thin`` of the ways is taken away with the seed), ``hexagons`` and ``triangles``.
+    ``thin`` of the ways is removed with the seed), ``hexagons`` and ``triangles``.
 
     Raises:
         ValueError: The kind is not known, or a number is out of its range.

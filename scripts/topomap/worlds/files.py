@@ -49,7 +49,7 @@ def load(
         north: Where slot 0 points, in degrees clockwise of north; None for the best turn.
         straight: By how many degrees two exits of a place on one path may be off from being
             opposite. If it is None, those in opposite slots are on one path.
-        two_way: Whether ways that can be gone one way only are taken as two-way.
+        two_way: Whether one-way ways are taken as two-way.
 
     Returns:
         The world.

@@ -33,7 +33,7 @@ from topomap.worlds.rows import NO, YES, Row, number, rows_of
 
 MOST_CLEAR, FINE = 16, MOST  # the most slots that bearings may fit; and the slots if they fit none
 CLEAR = 1 / 8  # by how many slots a bearing may be off
-OFF = 10.0  # degrees: by how much the exit of arrival may be off, if it is not told
+OFF = 10.0  # degrees: by how much the exit of arrival may be off, if it is not given
 UNMEASURED = 5  # degrees: by how much bearings are taken to be off if nothing is known
 MISREAD = 20.0  # degrees: a larger difference is not an error of measurement
 BENDS = (10.0, 60.0)  # degrees: the range of the limit for two exits to be on one path
@@ -140,7 +140,7 @@ class Visit(NamedTuple):
     """A row whose bearings are read.
 
     It has the exits, the exit that is taken and the exit of arrival; the latter are None if they
-    are not told.
+    are not known.
     """
 
     row: Row
@@ -480,7 +480,7 @@ def _choose(
     bearings = sorted({bearing for visit in seen for bearing in visit.exits})
     told = options.tolerance
     tries = [*range(FEWEST, MOST_CLEAR + 1, 2)] if options.slots is None else [options.slots]
-    if told and not options.slots:  # with the given slots, the tolerance is told in degrees
+    if told and not options.slots:  # with the given slots, the tolerance is reported in degrees
         tries = []
     for slots in tries:
         at, off = _fit(bearings, slots, frame)

@@ -1,4 +1,4 @@
-"""Plans: what a file tells of a world, as places and the ways between them, with directions.
+"""Plans: what a file says about a world, as places and the ways between them, with directions.
 
 ``courses`` makes a world of a plan, and chooses the slots.
 """
@@ -24,7 +24,7 @@ class Way(NamedTuple):
 
     ``ends`` are its two exits. ``move`` is how far it leads from the first place to the second,
     east and north, and ``length`` is how long it is; both are None if the file does not tell.
-    ``one_way`` tells that it can be gone only from the first place to the second.
+    ``one_way`` says that it can be gone only from the first place to the second.
     """
 
     ends: tuple[Exit, Exit]
@@ -35,7 +35,7 @@ class Way(NamedTuple):
 
 @dataclass(frozen=True)
 class Plan:
-    """What a file tells of a world.
+    """What a file says about a world.
 
     ``points`` tells where places are, as far as that is known. ``landmarks`` has what is recognised
     at a place, as terms of clingo. ``names`` tells how a place is called, if that is not its own
@@ -44,7 +44,7 @@ class Plan:
     any. ``straight`` has the pairs of exits of a place that are on one path; it is None if opposite
     ones are. ``notes`` go into the header of an instance. ``told`` has warnings of one line each,
     which name the file. ``guessed`` tells what the coordinates were taken for, if the file does not
-    tell it.
+    say it.
     """
 
     name: str

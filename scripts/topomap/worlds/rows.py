@@ -80,7 +80,7 @@ class Row:
 
 
 def number(text: str) -> float | None:
-    """Read a finite number as people write it; None if a text is none."""
+    """Read a finite number as people write it; None if a text is not one."""
     if len(text) > 40 or not re.fullmatch(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?", text, re.ASCII):
         return None
     value = float(text)

@@ -1,7 +1,7 @@
 """The language of Survex: what its files say of stations and of the legs between them.
 
 Files are read line by line. A command begins with an asterisk, and any other line is a leg, in the
-order of readings that ``*data`` tells. A command that is not known, or a style of data that is not
+order of readings that ``*data`` gives. A command that is not known, or a style of data that is not
 read, is refused with its file and line. What is known but left out is counted.
 """
 
@@ -147,7 +147,7 @@ class _Settings:
     style: str = "normal"
     order: tuple[str, ...] = USUAL
     units: Mapping[str, float] = field(default_factory=dict)
-    quadrants: frozenset[str] = frozenset()  # the quantities that are told as quadrants
+    quadrants: frozenset[str] = frozenset()  # the quantities that are given as quadrants
     percent: frozenset[str] = frozenset()
     corrected: Mapping[str, tuple[float, float]] = field(default_factory=dict)
     declination: float = 0.0
@@ -592,7 +592,7 @@ class _Reader:
         return number
 
     def _by_axes(self, told: Mapping[str, _Word]) -> tuple[float, float, float, float]:
-        """Read a leg that is told by how far it leads east, north and up."""
+        """Read a leg that is given by how far it leads east, north and up."""
         east, north = (self._measured(told, name) for name in ("dx", "dy"))
         if east is None or north is None:
             raise self.fault("no easting or no northing")

@@ -22,7 +22,7 @@ _WHOLE = re.compile(r"0|-?[1-9][0-9]{0,8}", re.ASCII)
 
 @functools.lru_cache(maxsize=1)  # all readers look at one file
 def json_of(content: bytes) -> Any:
-    """Read a JSON text; the result is the error if it is none."""
+    """Read a JSON text; the result is the error if it is not one."""
     try:
         return json.loads(content.decode("utf-8-sig"))
     except json.JSONDecodeError as error:

@@ -29,7 +29,7 @@ from topomap.worlds.plan import Plan, Point, Reading, Way
 from topomap.worlds.readers import exact
 from topomap.worlds.readers.common import is_xml_with
 
-Data = Mapping[str, Any]  # what is told of an edge
+Data = Mapping[str, Any]  # what the file says about an edge
 DEGREE = 111_195  # metres of a degree of latitude, for an earth radius of 6,371 km
 NEAR = 1e-9  # two points that are so near are one
 FAR = 0.1  # if a course ends farther from its places, as a share of its length, there is a warning
@@ -161,7 +161,7 @@ def plan_of(file: str, graph: "nx.Graph[Any]", reading: Reading) -> Plan:
 
 
 class _Edge(NamedTuple):
-    """What is told of an edge: its course, if it has one, and its attribute ``oneway``."""
+    """What the file says about an edge: its course, if it has one, and its attribute ``oneway``."""
 
     course: tuple[Point, ...] | None
     oneway: str
@@ -180,8 +180,8 @@ def _edges(
 ) -> list[tuple[Place, Place, tuple[Point, ...] | None, bool]]:
     """The ways, in the order of their places.
 
-    Each has its ends, its course (None if it is not told), and whether it can be gone only from the
-    first end to the second.
+    Each has its ends, its course (None if it is not given), and whether it can be gone only from
+    the first end to the second.
 
     Raises:
         InputError: A course cannot be read.
@@ -221,7 +221,7 @@ def _edges(
 
 
 def _course(file: str, one: Place, other: Place, data: Data) -> tuple[Point, ...] | None:
-    """Read the course of an edge; None if it is not told.
+    """Read the course of an edge; None if it is not given.
 
     Raises:
         InputError: It cannot be read.
@@ -259,7 +259,7 @@ def _placed(
 ) -> tuple[list[Point], float]:
     """The points of a way, in the order from its first end to its second.
 
-    It is told, too, how far they end from the two places.
+    The second result is how far they end from the two places.
     """
     if told is None:
         return [*points], 0.0

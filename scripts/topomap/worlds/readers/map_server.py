@@ -216,7 +216,7 @@ def _free_space(
 def _grey(picture: Any) -> Any:
     """The brightness of each pixel, from 0 to 255, as the mean of its colours.
 
-    It is told, too, whether each pixel is known; transparent ones are not.
+    The second result is whether each pixel is known; transparent ones are not.
     """
     import numpy as np
 

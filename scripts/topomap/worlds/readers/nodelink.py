@@ -88,7 +88,7 @@ def read(file: str, content: bytes, reading: Reading) -> Plan:
 
 
 def _course(edge: Mapping[str, Any]) -> dict[str, Any]:
-    """What is told of an edge, with a course of GeoJSON as a list."""
+    """What the file says about an edge, with a course of GeoJSON as a list."""
     told = {**edge}
     course = told.get("geometry")
     if isinstance(course, dict):
