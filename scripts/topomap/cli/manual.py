@@ -131,7 +131,7 @@ def _arguments(parser: argparse.ArgumentParser, macro: str) -> Iterator[str]:
 
 
 def _epilog(parser: argparse.ArgumentParser, macro: str) -> Iterator[str]:
-    """The examples, the exit statuses, and what else is told at the end of the help."""
+    """The examples, the exit statuses, and what else stands at the end of the help."""
     told = re.split(r"\n\n", (parser.epilog or "").strip())
     for paragraph in filter(None, told):
         head, colon, rest = paragraph.partition(":")

@@ -356,7 +356,7 @@ def _peers_sums(rows: Sequence[dict[str, Any]]) -> str:
             f"{how}: the algorithm ended in {len(ended)} of {len(told)} worlds, in {right} of them "
             f"with an automaton that predicts everything rightly. In {least} worlds its automaton "
             f"has as many states as the smallest one, and in {whole} a state for each dstate."
-            + quarter * bool(few)
+            f"{quarter * bool(few)}"
         )
     return _items(lines)
 

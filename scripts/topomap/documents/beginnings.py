@@ -1,4 +1,4 @@
-"""Maps of an experience, of which only the first steps count."""
+"""Maps of the first steps of an experience."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -19,7 +19,7 @@ def beginning(
         The dstate after each step of the experience.
 
     Raises:
-        InputError: It is no hypothesis of either. One line that begins with ``where``.
+        InputError: It is not a hypothesis of either. One line that begins with ``where``.
     """
     if len(at) - 1 not in (whole.steps, experience.steps):
         raise InputError(f"{where}: {len(at) - 1} steps, but the instance has {experience.steps}")

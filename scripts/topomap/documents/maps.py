@@ -337,7 +337,7 @@ def list_of(said: Any) -> list[Any]:
     """Check that what is said is a list.
 
     Raises:
-        ValueError: It is none.
+        ValueError: It is not a list.
     """
     if not isinstance(said, list):
         raise ValueError

@@ -202,14 +202,14 @@ def unfolding(experience: Experience) -> tuple[DState, ...]:
 
 @dataclass(frozen=True)
 class Settled:
-    """What further walk leaves one of the maps of a kind that live at the end of a walk.
+    """Which further walk leaves only one of the maps of a kind that remain at the end of a walk.
 
-    ``kind``: "one", there is one, the real one; "walk", ``refuted.walk`` leaves the real one;
-    "never", ``refuted.never`` of the others can be refuted by no walk; "others", the real one is
-    none of them; "no map", there is none; None if that is open, as ``why`` says. ``met`` is how
-    many of these maps were found, ``living`` how many there are, and ``others`` how many that are
-    not the real one (both None if they were not counted); ``tried``, of how many others it was
-    found out what refutes them.
+    ``kind`` is "one" if there is one map, the real one; "walk" if ``refuted.walk`` leaves only the
+    real one; "never" if ``refuted.never`` of the others cannot be refuted by any walk; "others" if
+    the real one is not among them; "no map" if there is none; None if that is open, as ``why``
+    says. ``met`` is the number of these maps that were found, ``living`` the number of all of them,
+    and ``others`` the number of those that are not the real one (both None if they were not
+    counted). ``tried`` is the number of others for which it was found out what refutes them.
     """
 
     kind: str | None

@@ -1,9 +1,9 @@
 """A learner of automata without reset in a world: AALpy's hW, from the extra ``peers``.
 
-It walks through the world as a robot does, and ends with one automaton. An input is a turn; if
-there is a gateway, the agent leaves by it, and sees what is beyond, and if there is none, it stays
-and sees that. So the states of the world are its dstates, and an automaton that is as small as can
-be has one state for each class of dstates that no walk tells apart.
+The learner walks through the world as a robot does, and ends with one automaton. An input is a
+turn. If there is a gateway in this direction, the agent leaves by it and sees what is beyond; if
+there is none, it stays where it is and sees that. So the states of the world are its dstates, and a
+smallest automaton has one state for each class of dstates that no walk tells apart.
 """
 
 import random
@@ -20,8 +20,8 @@ from topomap.runtime.watch import Watch
 from topomap.worlds.census import classes, look
 
 MOST_INPUTS = 500_000
-PATIENCE = 4  # times as long as other parts of the work may take, a learner may
-TESTED = 200  # random inputs after which a hypothesis is believed: AALpy's default
+PATIENCE = 4  # a learner may take so many times as long as other parts of the work
+TESTED = 200  # random inputs after which a hypothesis is accepted: AALpy's default
 BLOCKED = "no gateway there"
 INPUTS, ALIKE = "inputs", "all alike"  # why a learner is stopped, other than by lack of time
 
@@ -30,11 +30,12 @@ INPUTS, ALIKE = "inputs", "all alike"  # why a learner is stopped, other than by
 class Learned:
     """The result of a learner of automata.
 
-    It gave so many ``inputs``, of which so many were ``moves`` along a way, and so many tested a
-    hypothesis, which was then kept or refuted. It learned so many ``states``; the world has so many
-    dstates, and the smallest automaton that predicts it has so many states. ``right`` is whether
-    what was learned predicts the world. If the learner did not end, ``why`` gives the reason, and
-    what it learned is None.
+    ``inputs`` is the number of inputs that it gave; of these, ``moves`` led along a way, and
+    ``tests`` tested a hypothesis, which was then kept or refuted. ``states`` is the number of
+    states that it learned, ``dstates`` the number of dstates of the world, and ``least`` the number
+    of states of the smallest automaton that predicts the world. ``right`` is whether what was
+    learned predicts the world. If the learner did not end, ``why`` gives the reason, and what it
+    learned is None.
     """
 
     inputs: int
@@ -97,7 +98,7 @@ def learned(
         """AALpy's tests of a hypothesis.
 
         The first hypothesis has one state. Where its test finds nothing against it, AALpy 2.0 ends
-        with an error of its own, and so the work is ended before that.
+        with an error of its own, so the work is stopped before that.
         """
 
         begun = False

@@ -108,7 +108,7 @@ def _proof_of(
     """Read a proof of a file.
 
     Raises:
-        InputError: It is none.
+        InputError: It is not a proof.
     """
 
     def number(value: Any) -> int:

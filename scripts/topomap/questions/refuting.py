@@ -1,11 +1,11 @@
 """Which further walk in a known world refutes all remaining maps but the real one, if any does.
 
 A further walk refutes a map if the map predicts something else than what is seen. Beyond a pending
-gateway a map predicts nothing, but what comes of it there is not free: whoever goes back the way by
-which it came is where it was. So the agent is followed there, too (``Lineage``): a map is refuted
-by a walk if, and only if, no map lives after the walk that came of it. For if what it does predict
-is seen, then the map lives in which each step beyond a pending gateway, but for those back, came to
-a new place.
+gateway a map predicts no view, but not everything is possible there: an agent that goes back the
+way by which it came is where it was before. So the agent is followed there, too (``Lineage``). A
+map is refuted by a walk if, and only if, no map that extends it is consistent after the walk. The
+reason is this: if all that the map predicts is seen, then that extension of it is consistent in
+which each step beyond a pending gateway, except for steps back, came to a new place.
 """
 
 from collections.abc import Iterable, Sequence
@@ -16,8 +16,8 @@ from topomap.questions.machine import Spent, Work
 from topomap.questions.standings import Prediction, Standing, sight
 
 MOST_WORK = 300_000  # moves of maps, in the search for the shortest walk
-# Where the agent is in a map: a dstate; or beyond a pending gateway, of each step there, by how
-# many slots clockwise of where the agent stands, or stood when it went on, the way back lies.
+# Where the agent is in a map: a dstate, and for each step beyond a pending gateway by how many
+# slots the way back lies clockwise of where the agent stands, or stood when it went on.
 State = tuple[Gateway, tuple[int, ...]]
 
 
@@ -72,7 +72,7 @@ class Refuted:
 
 
 def refute(real: Standing, others: Iterable[Standing], work: Work) -> Refuted:
-    """Find the shortest walk in the real world that refutes all of these maps, which live so far.
+    """Find the shortest walk in the real world that refutes all of these maps.
 
     If it would take too much work to find it, some walk that refutes them is found.
     """

@@ -357,7 +357,7 @@ def _go_on(
     walks = [predict(one, plan.turns, plan.drop) for one in standings]
     for nth, turn in enumerate(plan.turns):
         if len(robot.route) == most or turn not in robot.world.view(robot.dstate):
-            break  # (in the second case the real map is another one, and is told from these)
+            break  # (in the second case the real map is another one, and is told apart from these)
         if nth == plan.drop:
             robot.drops.append(len(robot.route))
         robot.step(turn)

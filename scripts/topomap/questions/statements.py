@@ -48,7 +48,7 @@ def parse_statement(text: str, experience: "Experience", command: str) -> Statem
     """Read the statement in a text, about an experience of which all steps count.
 
     Raises:
-        InputError: It is none. One line that begins with the command.
+        InputError: It is not a statement. One line that begins with the command.
     """
     try:
         return _parsed(text, experience)

@@ -109,7 +109,7 @@ def collection(name: str, given: Iterable[T]) -> Iterable[T]:
     """Check that a value is a collection.
 
     Raises:
-        TypeError: It is none, or it is a text, where nobody means the single letters.
+        TypeError: It is not one, or it is a text, where nobody means the single letters.
     """
     if isinstance(given, str | bytes) or not isinstance(given, Iterable):
         raise TypeError(f"{name}: a collection is wanted, such as a list, not {shown(given)}")

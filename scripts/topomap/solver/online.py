@@ -2,10 +2,10 @@
 
 It tells how many hypotheses there are, the best maps, and what is certain.
 
-While few hypotheses live, all of them are kept, each with its map, and a step enters the children
-of each (``search/living.py``). The cost of this does not grow with the log. If there are too many
-(LIVING), clingo takes over (``stepwise.py``) until they have become few again. Both give the same
-answers.
+While there are few hypotheses, all of them are kept, each with its map, and a step enters the
+children of each (``search/living.py``). The cost of this does not grow with the log. If there are
+too many (LIVING), clingo takes over (``stepwise.py``) until they have become few again. Both give
+the same answers.
 
 But clingo's program grows with each step. If it also becomes too large (MOST_ATOMS), only SOME of
 the hypotheses are kept, those with the fewest paths and places. Then little is proved, and the

@@ -96,7 +96,7 @@ def look(world: TopologicalMap, gateway: Gateway) -> tuple[Any, ...]:
     """What is seen at a gateway.
 
     It has the slots of the other gateways, clockwise from this one, the landmarks, and which of the
-    gateways are on one path, if that is told.
+    gateways are on one path, if that is known.
     """
     landmarks = world.landmarks.get(gateway[0], frozenset())
     return world.view(gateway), landmarks, world.pairs(gateway)

@@ -51,7 +51,7 @@ class Environment:
         """Find the place with this label.
 
         Raises:
-            InputError: There is none.
+            InputError: There is no such place.
         """
         for place in self.map.stars:
             if label(place) == text:

@@ -81,7 +81,7 @@ def checked(
     """The first ``steps`` slots of a route (by default all), each of which must be a way.
 
     Raises:
-        InputError: A step is not; the message names it.
+        InputError: A step is not a way; the message names it.
     """
     place = start
     checked = []

@@ -376,7 +376,7 @@ class _Reader:
         """Read a number.
 
         Raises:
-            InputError: It is none.
+            InputError: It is not a number.
         """
         signs, text = self.now.characters, word.text
         sign = 1.0

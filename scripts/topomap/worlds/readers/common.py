@@ -52,7 +52,7 @@ def demand_json(file: str, content: bytes) -> Any:
     """Read a file of JSON.
 
     Raises:
-        InputError: It is none. One line.
+        InputError: It is not JSON. One line.
     """
     told = json_of(content)
     if isinstance(told, InputError):

@@ -170,7 +170,7 @@ def demand_slots(file: str, told: object) -> int:
     """Read a number of slots.
 
     Raises:
-        InputError: It is none.
+        InputError: It is not a number of slots.
     """
     try:
         slots = _slot(told)

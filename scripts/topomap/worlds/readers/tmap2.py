@@ -201,7 +201,7 @@ def _demand_plain(file: str, text: str) -> None:
     """Check that there are no tags, and that nothing is nested too deeply.
 
     Raises:
-        InputError: There are, or it is.
+        InputError: There is a tag, or something is nested too deeply.
     """
     depth = 0
     for event in yaml.parse(text, Loader=_Loader):
@@ -225,7 +225,7 @@ def _demand_small(file: str, root: yaml.Node) -> None:
     """Check that no value contains itself, and that aliases do not make the file too large.
 
     Raises:
-        InputError: One does, or they do.
+        InputError: A value contains itself, or the file becomes too large.
     """
     sizes: dict[Hashable, int] = {}
     waiting = [(root, False)]

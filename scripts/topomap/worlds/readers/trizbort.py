@@ -201,7 +201,7 @@ def _demand_apart(file: str, ways: Iterable[Way], called: Mapping[Place, str]) -
     """Check that no two lines end at one port of a room.
 
     Raises:
-        InputError: Two do.
+        InputError: Two lines do.
     """
     taken: dict[Exit, Place] = {}
     for way in ways:
