@@ -27,9 +27,9 @@ QUESTIONS = {
     "How do I install it without make?": ("install without make", "pip install '.[draw]'"),
     "How do I get the map as a networkx graph?": ("networkx", "to_networkx"),
     "Which maps are planar?": ("planar maps", "genus"),
-    "What may I cite?": ("cite", "CITATION.cff"),
+    "What should I cite?": ("cite", "CITATION.cff"),
     "Is it exact?": ("exact", "every"),
-    "How large can it be?": ("how large", "steps"),
+    "How large can a problem be?": ("how large", "steps"),
     "How do I read `at(9,3,2)`?": ("at(9,3,2)", "after step 9 the agent"),
 }
 
