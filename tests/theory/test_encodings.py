@@ -143,7 +143,7 @@ AGGREGATES = {
         "at(T,P,S): candidate(P,T,I), numbered(P,S,I), not barred(P,T,I); "
         "at(T,P,0): uneven(P,T) }"
     ],
-    "planar": ["1 >= { candidate(Q,(T-1),X): not excluded(Q,Q,0) }"],
+    "planar": ["1 != { candidate(Q,(T-1),X): not excluded(Q,Q,0) }"],
     "phases/counts": [
         "N = #count { T: pass(A,T,S,D), four_gateways(T) }",
         "L = #count { C: passes_four(C) }",
