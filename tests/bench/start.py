@@ -32,7 +32,7 @@ that only imports what the call cannot do without. The figures are processor mil
 processes, the median of {TIMES} runs in which the two take turns. The goal is a ratio of at
 most {MOST}.
 
-| `topomap` | ms | beside `python -c` | ms | ratio |
+| `topomap` | ms | compared with `python -c` | ms | ratio |
 | --- | --: | --- | --: | --: |
 """
 
