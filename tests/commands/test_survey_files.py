@@ -273,7 +273,7 @@ def test_depths_and_legs_that_nobody_measured(tmp_path):
         ("*begin a\n*begin b\n*end a\n*end b", 3, r"another block .* line 2, \*begin b"),
         ("*begin a", 1, r"\*begin a has no \*end"),
         ("*end a", 1, "no block has begun"),
-        ("*begin\n" * 51, 51, "more than 50 blocks"),
+        ("*begin\n" * 51, 51, "more than 50 nested blocks"),
         ("*equate a", 1, "two stations"),
         ("*fix a 1 2", 1, "three coordinates"),
         ("*flags deep", 1, "'deep' is not a flag"),

@@ -79,7 +79,7 @@ def _parsed(text: str, experience: "Experience") -> Statement:
 def _unknown(word: str) -> str:
     """Say what is wrong with a word."""
     if word in RELATIONS:
-        return f"it is said of {', '.join(RELATIONS[word])}: {word}(...)"
+        return f"its arguments are {', '.join(RELATIONS[word])}: {word}(...)"
     if word in FIGURES:
         return f"it is a number, to be compared: {word} < 12"
     if word in QUALITIES:
