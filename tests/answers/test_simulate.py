@@ -162,7 +162,7 @@ def test_a_world_whose_own_map_breaks_the_path_axiom_can_be_explored(topomap):
     assert "--no-path-axiom" not in without.stdout
     done = topomap(*call)
     assert done.returncode != 0
-    assert "the truth breaks the path axiom, and so is no map" in done.stdout
+    assert "the truth breaks the path axiom, and so is not a map" in done.stdout
     assert "is circular; --no-path-axiom\n" in done.stdout
 
 
