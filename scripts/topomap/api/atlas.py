@@ -56,7 +56,7 @@ def atlas_under(
 
     Parameters:
         worlds: The worlds, each with its call, its name, and where the walks begin.
-        most: The largest number of maps that is counted. If there are more, only that is said.
+        most: The largest number of maps that is counted. If there are more, only that is reported.
         seconds: The number of seconds that each part of the work may take.
         steps: The largest number of steps of the random walk.
         seed: The seed of the random walk.
@@ -131,7 +131,7 @@ def _walked(watch: Watch, walk: Walk, most: int, seconds: float) -> dict[str, An
 def _peer(
     watch: Watch, environment: Environment, start: Gateway, seed: int, seconds: float
 ) -> dict[str, Any]:
-    """What AALpy learns of a world."""
+    """What AALpy learns about a world."""
     watch.phase("a learner")
     return {
         how: peers.learned(

@@ -301,7 +301,7 @@ def follow(
         bound: The largest number of places that a map may have.
         marker: Whether the agent carries a marker, which the next steps may use.
         count_limit: The largest number of hypotheses that is counted. If there are more, only that
-            is said.
+            is reported.
         timeout: The number of seconds that the answer to a step may take.
         drift: By how many percent of the way shifts may be wrong; 10 by default.
         stretch: By how many percent lengths of one way may differ; 10 by default.

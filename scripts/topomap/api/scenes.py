@@ -85,10 +85,10 @@ def scenes_under(
 ) -> Choice:
     """Find the maps of a file under the watch of a command.
 
-    Of an instance these are the optimal maps, or those that are best so far, that have the parts of
-    the query; or, with a file of maps ``given``, those in it. Of a file that ``solve --json`` wrote
-    they are the maps in it. ``read`` makes the experience from the text of an instance and its
-    name.
+    For an instance these are the optimal maps, or those that are best so far, that have the parts
+    of the query; or, with a file of maps ``given``, those in it. For a file that ``solve --json``
+    wrote they are the maps in it. ``read`` makes the experience from the text of an instance and
+    its name.
 
     If no optimal map is found in time, some map is taken that is not proved to be best. The maps of
     an instance are in order. If there are more than ``MANY``, they are in the order in which they

@@ -25,7 +25,7 @@ STEPS = 20  # the default number of steps for each way
 
 @dataclass(frozen=True, repr=False)
 class Simulation(Reply):
-    """What came of a robot in an environment.
+    """The result of a robot in an environment.
 
     It is ``complete`` if the robot came to an end, so that more walking would tell it nothing, and
     if the walks for comparison came to an end, too.
@@ -157,7 +157,7 @@ def simulate(
             ``no_path_axiom``, by which a path may contain a place twice, and may be circular.
 
     Returns:
-        What came of it, with ``end``, ``maps``, ``truth``, ``experience``, ``steps``, and for
+        The result, with ``end``, ``maps``, ``truth``, ``experience``, ``steps``, and for
         comparison ``tour`` and ``random``. If something was cut short, ``fault`` says why.
 
     Raises:

@@ -100,7 +100,7 @@ def by_definition(experience: Experience, at: At, demands: Sequence[str] = ()) -
 
 
 def _contradictions(experience: Experience, stands: dict[int, Gateway]) -> set[Violation]:
-    """Find what contradicts what is known besides views, for each two steps."""
+    """Find what contradicts what is known besides views, for each pair of steps."""
     found = set()
     for one, other in combinations(sorted(stands), 2):
         if stands[one][0] != stands[other][0]:

@@ -1,4 +1,4 @@
-"""Maps that anyone made: they are read from JSON, and what is said of them is kept.
+"""Maps that anyone made: they are read from JSON, with what is said about them.
 
 The file is what ``topomap solve --json`` or ``generate --truth`` writes, what ``clingo --outf=2``
 writes, or a list of maps. A map needs only ``at``, ``[[T,P,S], ...]``.

@@ -1,4 +1,4 @@
-"""What is wrong with maps, by two checkers, and whether they are what is said of them."""
+"""What is wrong with maps, by two checkers, and whether what is said about them is true."""
 
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -291,7 +291,7 @@ def _mistaken(
 def faults(
     experience: Experience, document: Document, entry: dict[str, Any], at: At
 ) -> Iterator[str]:
-    """Find what is said of a map, alone or with others, that does not follow from ``at``."""
+    """Find what is said about a map, alone or with others, but does not follow from ``at``."""
     grown = Grown(experience, {step: (place, slot) for step, place, slot in at}, len(at) - 1)
     for key, said in entry.items():
         if key in ("at", "real", "misread"):

@@ -121,7 +121,7 @@ def straight(
 ) -> Layout | None:
     """Draw by the compass, if that is possible; the drawing is turned by quarters only.
 
-    Of the links that are not in the planar part only the beginning and the end are drawn, as stubs.
+    Links that are not in the planar part are drawn only at their beginning and their end, as stubs.
     """
     parts = world.parts()
     if len(parts) > 1:

@@ -38,7 +38,7 @@ def draw(
 ) -> Layout:
     """Draw a map into axes, as it is ``laid`` out, and return the layout.
 
-    Of a map with links that cross others the faces are not drawn, because those of the planar part
+    If some links cross others, no faces are drawn, because those of the planar part
     are not the map's.
     """
     world = scene.world

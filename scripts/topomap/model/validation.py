@@ -118,7 +118,7 @@ def _kind(seen: Experience, step: int) -> Any:
     """What a place looks like, whichever gateway the agent arrives by.
 
     It consists of its landmarks, and how far apart its gateways lie. The order of the gaps is left
-    out: this makes warnings fewer, but none wrong.
+    out, which can suppress warnings, but makes none of them wrong.
     """
     view = sorted(seen.views[step])
     apart = [after - before for before, after in pairwise(view)]

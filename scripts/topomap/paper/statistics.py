@@ -276,7 +276,7 @@ def _branch(experience: Experience, query: Query, cube: Cube, watch: Watch | Non
 def figures_text(figures: Mapping[str, Any], fault: str | None) -> str:
     """Write the figures to read.
 
-    Of a search that was cut short, ``at_least`` has the figures of the nodes that were visited.
+    If the search was cut short, ``at_least`` has the figures of the nodes that were visited.
     """
     least = figures.get("at_least")
     told, more = (least, "at least ") if least else (figures, "")

@@ -5,8 +5,8 @@ breaks only this one.
 
 A reason may be single, such as ``view(7,1)``: the views after steps 7 and 1 differ, so they are not
 of one place. Or it may be gathered: a whole rule, such as ``planarity``, or all that is seen after
-one step, such as ``view(7)``. A single reason is in force if all gathered ones are in force of
-which it is a part: ``view(7,1)`` is a part of ``view(7)`` and of ``view(1)``.
+one step, such as ``view(7)``. A single reason is in force if all gathered reasons of which it is
+a part are in force: ``view(7,1)`` is a part of ``view(7)`` and of ``view(1)``.
 """
 
 import math

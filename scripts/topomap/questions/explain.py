@@ -1,7 +1,7 @@
 """Why a statement is impossible or certain, or why there is no map.
 
 ``encodings/explain.lp`` makes a reason, which may be given up, of each thing that a rule forbids.
-First the shortest beginning of the experience is found of which the verdict is already true. Then a
+First the shortest beginning of the experience for which the verdict already holds is found. Then a
 minimal unsatisfiable core of reasons is sought for it: whole kinds of rules are removed first, then
 one reason after the other, in several orders, and the smallest core is kept. If there is no map at
 all, and more than a few reasons would be needed, they are gathered (``cores``): each is a whole

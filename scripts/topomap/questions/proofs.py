@@ -37,7 +37,7 @@ def proofs(planned: Planned) -> dict[str, Any]:
 
 @dataclass(frozen=True, repr=False)
 class Checked(Reply):
-    """What came of checking ``proofs`` proofs: a line for each that is ``wrong``.
+    """The result of checking ``proofs`` proofs: a line for each that is ``wrong``.
 
     They are about the first ``steps`` of ``whole`` steps.
     """

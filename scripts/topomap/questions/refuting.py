@@ -99,8 +99,8 @@ def difference(
 ) -> tuple[int, ...] | None:
     """Find the shortest walk that refutes one map; None if no walk does.
 
-    The agent is ``there`` in the map, and ``here`` in the world. To go through a pending gateway
-    and back refutes nothing that is not refuted without that.
+    The agent is ``there`` in the map, and ``here`` in the world. A walk through a pending gateway
+    and back refutes nothing that is not refuted without it.
     """
     level: list[tuple[State, State, tuple[int, ...]]] = [(here, there, ())]
     met = {(here, there)}

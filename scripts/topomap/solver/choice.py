@@ -152,8 +152,8 @@ def hypotheses(
 ) -> Iterator[Found | None]:
     """Find the maps of a query that minimises, by the way that has less work to do.
 
-    It gives what ``solving.hypotheses`` gives, and sets ``watch.by`` to the way. Of the maps that
-    are not proved to be best, only those are given that are better than the best one of the search.
+    It gives what ``solving.hypotheses`` gives, and sets ``watch.by`` to the way. A map that is not
+    proved to be best is given only if it is better than the best one of the search.
     """
     trial = Trial(experience, query, watch, kind)
     if trial.whole:

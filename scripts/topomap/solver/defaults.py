@@ -33,7 +33,7 @@ WORDS = {
 def in_the_way(experience: Experience, query: Query, watch: Watch) -> list[str]:
     """Find what alone stands in the way of a closed map, for a query that has none.
 
-    Only what is proved is named. If the budget ends before, nothing is said.
+    Only what is proved is named. If the budget is used up first, nothing is reported.
 
     Parameters:
         experience: What the agent saw and did.

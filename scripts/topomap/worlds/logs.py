@@ -351,7 +351,7 @@ def _demand_order(visits: Sequence[Visit]) -> None:
         if not rests and here.taken is None:
             raise here.row.fault("no exit is taken, but there are later rows")
     if visits[-1].taken is not None:
-        raise visits[-1].row.fault("an exit is taken, but no later row tells what is seen then")
+        raise visits[-1].row.fault("an exit is taken, but no later row says what is seen then")
     for visit in visits:
         for name in ("length", "east", "north"):
             if visit.taken is None and visit.row.cells.get(name):
@@ -420,8 +420,8 @@ def _by_straight_way(before: Visit, here: Visit, most: float | None) -> int:
     at = _nearest(here.exits, back, most)
     if at is None:
         raise here.row.fault(
-            f"no exit, or two of them, are nearest within {most:g} degrees to {_degrees(back)}, "
-            "the way straight back; the column arrived tells by which one arrived"
+            f"within {most:g} degrees of {_degrees(back)}, the way straight back, there is no "
+            "exit, or two are equally near; name the exit of arrival in the column arrived"
         )
     return at
 
