@@ -505,7 +505,11 @@ def test_what_is_refused(read, text, fault):
     [
         ({"frame": "arrival"}, "exits,taken\nN,N\nS,\n", "'N': a compass letter, but bearings are"),
         ({"straight_ways": 20}, "exits,taken\nN,N\nE,\n", "there is no exit, or two are"),
-        ({"straight_ways": 60}, "exits,taken\nN,N\nSE SW,\n", "there is no exit, or two are equally near"),
+        (
+            {"straight_ways": 60},
+            "exits,taken\nN,N\nSE SW,\n",
+            "there is no exit, or two are equally near",
+        ),
         ({"slots": 5}, GOOD, "walk.txt: slots(5): K must be even"),
         ({"slots": 4}, "exits,taken\n0 30,0\n0,\n", ":2: step 0: the exits at 0 and 30 degrees"),
         ({"facing": "ahead"}, GOOD, ":3: step 1: no exit, or more than one, is within 10"),
