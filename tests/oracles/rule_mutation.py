@@ -39,7 +39,7 @@ LISTED = ROOT / "tests/oracles/equivalent.toml"
 REPORT = ROOT / "docs/mutation.md"
 KINDS = ("remove", "drop", "negate", "shift")
 FATES = ("survived", "killed", "refused", "endless", "larger")
-UNDECIDED = "undecided"  # survived the first ENOUGH queries, and was asked no more of them
+UNDECIDED = "undecided"  # survived the first queries, and was asked no more of them
 SECONDS = 5  # of the processor, for one query: the encodings take milliseconds
 BYTES = 2 << 30
 ENOUGH = 1500  # queries, in an order drawn at random, for a mutant that is proved to be equivalent
@@ -299,12 +299,12 @@ def fates(
     jobs: int,
     proved: Container[Key] = (),
     before: Mapping[Mutant, str] = MappingProxyType({}),
-    quick: bool = False,
+    quick: int | None = None,
 ) -> Iterator[Tried]:
     """The fate of each mutant, as they come, each in a process of its own; the ``proved`` ones come
     last. The query that settled a mutant ``before`` comes first. A mutant that survives ENOUGH
-    queries, and is neither larger nor ``proved`` to be equivalent, is asked all the others, but
-    not if this is to be ``quick``."""
+    queries, and is neither larger nor ``proved`` to be equivalent, is asked all the others. With
+    ``quick``, a mutant that survives that many queries is undecided."""
     loaded = sets(folder, asked + measured)
     names_of_queries = [name_of(query) for query in asked]
     names = set().union(*loaded.values())
@@ -315,7 +315,7 @@ def fates(
 
     whole = {files: program(files) for files in loaded}
     lean = {file for query in measured for file in loaded[query.files]}
-    some = any(mutant.file in lean for mutant in chosen)
+    some = not quick and any(mutant.file in lean for mutant in chosen)
     least = [(query, rules(whole[query.files], query)) for query in measured if some]
     waiting = chosen[::-1]
     waiting.sort(key=lambda mutant: mutant.key not in proved)
@@ -340,8 +340,8 @@ def fates(
                     mine = [n for n, query in enumerate(asked) if query.files in mutated]
                     mine.sort(key=lambda n: names_of_queries[n] != before.get(mutant))
                     questions = [asked[number] for number in mine]
-                    fate, number = suffer(mutated, whole, questions[:ENOUGH])
-                    if fate == "survived" and mutant.file in lean:
+                    fate, number = suffer(mutated, whole, questions[: quick or ENOUGH])
+                    if fate == "survived" and mutant.file in lean and not quick:
                         signal.setitimer(signal.ITIMER_PROF, SECONDS * len(measured))
                         more = sum(
                             rules(mutated[query.files], query) - number
@@ -349,13 +349,13 @@ def fates(
                             if query.files in mutated
                         )
                         fate = "larger" if more > 0 else fate
-                    if fate == "survived" and mutant.key not in proved and questions[ENOUGH:]:
-                        if quick:
-                            fate = UNDECIDED
-                        else:
-                            fate, number = suffer(mutated, whole, questions[ENOUGH:])
-                            number += ENOUGH if fate != "survived" else 0
                     settled = names_of_queries[mine[number]] if number >= 0 else "-"
+                    if fate == "survived" and quick:
+                        fate, settled = UNDECIDED, str(quick)
+                    elif fate == "survived" and mutant.key not in proved:
+                        fate, number = suffer(mutated, whole, questions[ENOUGH:])
+                        if number >= 0:
+                            settled = names_of_queries[mine[ENOUGH + number]]
                     os.write(told, f"{fate or 'wrong'} {settled}".encode())
                     code = 0
                 finally:
@@ -403,7 +403,7 @@ def marks(
 
 
 def going_on(
-    path: Path, mark: dict[Mutant, str], trials: Trials, quick: bool = False
+    path: Path, mark: dict[Mutant, str], trials: Trials, quick: int | None = None
 ) -> Iterator[Tried]:
     """The fates that a file knows already, then those of the others, which are added to it.
 
@@ -422,7 +422,7 @@ def going_on(
     left, before = [], {}
     for mutant, key in keys.items():
         at, fate, query = known.get(key, ("", "", "-"))
-        if at == mark[mutant] and (quick or fate != UNDECIDED):
+        if at == mark[mutant] and (fate != UNDECIDED or (quick and int(query) >= quick)):
             yield Tried(mutant, fate, query)
             continue
         left.append(mutant)
@@ -525,8 +525,9 @@ def main(
     parser.add_argument("--known", type=Path, help="a file that keeps what was tried, to go on")
     parser.add_argument(
         "--quick",
-        action="store_true",
-        help=f"ask at most {ENOUGH:,} queries, and list the mutants that are undecided; no report",
+        metavar="N",
+        type=count,
+        help="ask at most N queries, and list the mutants that are undecided then; no report",
     )
     parser.add_argument("files", nargs="*", help="try only these, as theory/links; no report")
     options = parser.parse_args(argv)

@@ -172,15 +172,16 @@ def test_the_query_that_settled_a_mutant_comes_first_the_next_time(mutated, tmp_
 
 def test_quickly_a_survivor_of_the_first_queries_is_undecided(mutated, tmp_path, monkeypatch):
     """It is tried again as soon as it may be asked more."""
-    monkeypatch.setattr(mutate, "ENOUGH", 1)
     more = Query(("counter",), "n(5).", shown("n(0)", "n(1)", "n(5)"), ("-c", "limit=1"))
     monkeypatch.setitem(globals(), "ASKED", [*ASKED, more])
     known = tmp_path / "known.txt"
-    status, out, _, report = mutated("equivalent = []", "--quick", "--known", str(known))
+    status, out, _, report = mutated("equivalent = []", "--quick", "1", "--known", str(known))
     assert (status, report) == (1, None)
     first, *faults = out.splitlines()
     assert first.endswith("1 endless, 0 larger, 1 undecided")
     assert faults == ["undecided, not listed: counter | #show n/1. | remove"]
+    mutated("equivalent = []", "--quick", "1", "--known", str(known))
+    assert len(known.read_text().splitlines()) == 11
     assert mutated(listing(EQUIVALENT), "--known", str(known))[0] == 0
     assert known.read_text().count("undecided") == 1
     assert known.read_text().splitlines()[-1].split()[2] == "survived"
