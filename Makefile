@@ -88,7 +88,8 @@ batch: $(patsubst %.args,%.lp,$(wildcard $(BATCH)/*.args))
 
 # The shell reads the call: in names of files it may quote blanks, dollars and the like.
 $(BATCH)/%.lp: $(BATCH)/%.args $(MAKERS)
-	eval "$(BIN)/topomap generate $$(sed 1q '$<') --output '$@'"
+	@echo "topomap generate $$(sed 1q '$<')"
+	@eval "$(BIN)/topomap generate $$(sed 1q '$<') --output '$@'"
 
 test: $(TOOLS)
 	$(BIN)/pytest -n $(JOBS) -m 'not long'

@@ -12,7 +12,16 @@ from website.links import ELSEWHERE, ROOT, for_site, place, targets
 
 ORIGINS: dict[str, str] = {}  # pages of the site that are files of the repository
 TITLES = {"Exit statuses": "Exit statuses", "The facts": "Instances"}  # of sections as pages
-FIRST = "docs/first-questions.md"  # what newcomers look for, so the search gives it first
+# What newcomers look for comes first in the search, and what they seldom look for comes last.
+BOOST = {"first-questions.md": 4, "index.md": 8, "knowledge.md": 2, "reference/encodings/": 0.3}
+BOOST |= {"reference/python.md": 0.5, "mutation.md": 0.3, "solve.md": 0.5, "atlas.md": 0.5}
+BOOST |= {
+    "benchmark.md": 0.5,
+    "formats.md": 0.5,
+    "reference/commands/": 0.7,
+    "changes.md": 0.3,
+    "DEVELOPMENT.md": 0.5,
+}
 LANGUAGES = {".lp": "prolog", ".py": "python", ".cff": "yaml", ".toml": "toml"}
 
 
@@ -81,12 +90,16 @@ def on_files(files: Files, config: MkDocsConfig) -> Files:
 
 def on_page_markdown(markdown: str, page: Page, config: MkDocsConfig, files: Files) -> str:
     """The page as the site has it: links lead to pages of the site."""
-    origin = ORIGINS.get(page.file.src_uri)
+    path = page.file.src_uri
+    if path.startswith("source/"):  # files of the repository, to which pages link
+        page.meta["search"] = {"exclude": True}
+    for start, boost in BOOST.items():
+        if path.startswith(start):
+            page.meta["search"] = {"boost": boost}
+    origin = ORIGINS.get(path)
     if origin is None:
         return markdown
-    if origin == FIRST:
-        page.meta["search"] = {"boost": 4}
-    text = for_site(markdown, origin, page.file.src_uri)
+    text = for_site(markdown, origin, path)
     if origin == "encodings/README.md":
         text = re.sub(r"^\|.*\|$", _linked, text, flags=re.M)
     # A table of HTML has Markdown in it, which GitHub reads without being told to.

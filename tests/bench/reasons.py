@@ -112,22 +112,26 @@ def table(rows: list[dict[str, Any]], passed: int) -> str:
     searched = sum(one["searched"] for one in rows)
     needed = sum(one.get("needed", False) for one in rows)
     enough = sum(one.get("enough", False) for one in rows)
-    text = (
+    proved = [
+        "| what is proved | walks |",
+        "|---|--:|",
+        f"| there is no map, by the search in Python within {SEARCHED} seconds | {searched} |",
+        f"| no reason can be left out | {minimal} |",
+        f"| each reason is needed, by the definitions of the rules and without clingo | {needed} |",
+        f"| the reasons are enough, by trying all assignments of places | {enough} |",
+        f"| reasons are gathered | {len(gathered)} |",
+        f"| reasons are gathered, and fewer of them would not be enough | {sure} |",
+    ]
+    texts = (
         f"These are the figures of {len(rows)} walks of up to {STEPS} steps without a map, with "
-        f"several combinations of parts. For {searched} of them the search in Python, given "
-        f"{SEARCHED} seconds, proves that there is no map. For {minimal} it is proved that no "
-        f"reason can be left out. The reasons of {len(gathered)} walks are gathered, and for "
-        f"{sure} of these it is proved that fewer would not be enough. For {needed} walks it "
-        f"was checked by the definitions of the rules, without clingo, that each reason is needed; "
-        f"and for {enough}, by trying all assignments of places, that the reasons are enough. The "
-        f"others have too many assignments to be tried, or a map in which a gateway has two links, "
-        f"for which planarity and the sides of paths are not defined. {passed} more walks were "
-        f"passed over: a default stands in the way of a closed map, and `explain` says that "
-        f"instead of giving reasons. A yardstick is the time of `{YARDSTICK}`, measured after "
-        f"each command."
+        f"several combinations of parts. {passed} more walks were passed over: a default stands in "
+        f"the way of a closed map, and `explain` says that instead of giving reasons.",
+        "Not all assignments of places can be tried where there are too many of them, or where a "
+        "gateway has two links in some map: planarity and the sides of paths are not defined then.",
+        f"A yardstick is the time of `{YARDSTICK}`, measured after each command.",
     )
-    wrapped = textwrap.fill(text, 120, break_on_hyphens=False)
-    return wrapped + "\n\n" + "\n".join(lines) + "\n"
+    few, tried, yardstick = (textwrap.fill(text, 120, break_on_hyphens=False) for text in texts)
+    return "\n\n".join([few, "\n".join(proved), tried, "\n".join(lines), yardstick]) + "\n"
 
 
 def main() -> int:

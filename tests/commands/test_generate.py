@@ -143,7 +143,8 @@ def test_which_option_keeps_the_real_map_is_said(topomap):
     done = topomap("generate", "torus", 3, 3, "--route", "NN")
     assert done.returncode == 0
     assert done.stderr == (
-        "torus-3x3-NN: the environment's own map breaks the path axiom; --no-path-axiom keeps it\n"
+        "torus-3x3-NN: the environment's own map breaks the path axiom; "
+        "only --no-path-axiom finds it\n"
     )
     assert topomap("generate", "crescents", 1, 2, "--route", "E").stderr == ""
 

@@ -32,6 +32,18 @@ QUESTIONS = {
     "How large can a problem be?": ("how large", "steps"),
     "How do I read `at(9,3,2)`?": ("at(9,3,2)", "after step 9 the agent"),
 }
+# What newcomers type as well; and the page that they want.
+WORDS = {
+    "optimal map": "first-questions",
+    "bibtex": "first-questions",
+    "performance": "first-questions",
+    "at(T,P,S)": "index",
+    "compass": "knowledge",
+    "odometry": "knowledge",
+    "marker": "writing-instances",
+    "dstate": "index",
+    "install": "index",
+}
 
 
 def test_each_rule_of_the_paper_is_beside_what_it_states():
@@ -255,25 +267,53 @@ def read(browser):
     return " ".join(text.split())
 
 
+def searched(browser, served, typed):
+    """The first four links of the results of a search."""
+    browser.get(f"{served}/index.html")
+    browser.execute_script("document.getElementById('__search').click()")
+    field = waited(browser, lambda b: b.find_element("css selector", ".md-search__input"))
+    waited(browser, lambda _: field.is_displayed() and field.is_enabled())
+    field.send_keys(typed)
+    waited(browser, lambda b: b.find_elements("css selector", ".md-search-result__item"))
+    found = browser.find_elements("css selector", ".md-search-result__item a")
+    return [one.get_attribute("href") for one in found[:4]]
+
+
 @pytest.mark.long
 def test_first_questions_are_answered_by_one_search(browser, served):
     """One of the first four links of the results leads to the section that has the answer."""
     asked = re.findall(r"^## (.*)$", FIRST, re.M)
     assert asked == [*QUESTIONS]
     for question, (typed, answer) in QUESTIONS.items():
-        browser.get(f"{served}/index.html")
-        browser.execute_script("document.getElementById('__search').click()")
-        field = waited(browser, lambda b: b.find_element("css selector", ".md-search__input"))
-        waited(browser, lambda _, field=field: field.is_displayed() and field.is_enabled())
-        field.send_keys(typed)
-        waited(browser, lambda b: b.find_elements("css selector", ".md-search-result__item"))
-        found = browser.find_elements("css selector", ".md-search-result__item a")
-        places = [one.get_attribute("href") for one in found[:4]]
+        places = searched(browser, served, typed)
         texts = []
         for place in places:
             browser.get(place)
             texts.append(read(browser))
         assert any(answer in text for text in texts), (question, places)
+
+
+@pytest.mark.long
+def test_a_word_finds_the_page_that_explains_it(browser, served):
+    """And no file of the repository comes in between."""
+    for typed, page in WORDS.items():
+        places = searched(browser, served, typed)
+        assert urlsplit(places[0]).path == f"/{page}.html", (typed, places)
+        assert not any("/source/" in place for place in places)
+
+
+@pytest.mark.long
+def test_the_block_of_the_first_page_is_not_one_line(browser, served):
+    """Its lines, and the picture beside them, fit in the page."""
+    browser.get(f"{served}/index.html")
+    tall, end, page = browser.execute_script(
+        """const code = [...document.querySelectorAll("td pre code")][0].getBoundingClientRect();
+        const picture = document.querySelector("td img").getBoundingClientRect();
+        const page = document.querySelector("article").getBoundingClientRect();
+        return [code.height, picture.right, page.right];"""
+    )
+    assert tall > 80
+    assert end <= page + 1
 
 
 @pytest.mark.long

@@ -89,7 +89,7 @@ def run(args: argparse.Namespace) -> int:
     made = instance_of(args, world)
     if made.fault:
         fault = "the environment's own map breaks the path axiom"
-        say(f"{made.name}: {fault}; --no-path-axiom keeps it")
+        say(f"{made.name}: {fault}; only --no-path-axiom finds it")
     target = args.output
     if target and (target.endswith("/") or Path(target).is_dir()):
         target = str(Path(target) / f"{made.name}.lp")

@@ -56,6 +56,7 @@ VERDICTS = {
     "open": "so in some maps, and not in others",
     "no map": "no map is consistent with the experience",
 }
+NOTHING = "there are maps, so there is nothing to explain"
 LATE = {"closed", "travelled"}  # demands that a map may meet only after a later step
 LASTING = ("same", "at")  # relations about which later steps tell nothing new
 Goal = bool | None  # whether the statement is to hold; None if there is none
@@ -145,7 +146,7 @@ class Explanation:
         if self.verdict is None:
             yield f"{head}not settled"
         elif self.verdict == "open":
-            yield f"{head}{VERDICTS['open']}" if statement else "there are maps"
+            yield f"{head}{VERDICTS['open']}" if statement else NOTHING
             for holds, at in sorted(self.maps.items(), reverse=True):
                 does = "" if not statement else f" in which it {'holds' if holds else 'does not'}"
                 yield f"  a map{does}: {map_line(experience, Found(at, 'consistent'))}"

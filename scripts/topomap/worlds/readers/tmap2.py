@@ -87,7 +87,7 @@ def read(file: str, content: bytes, reading: Reading) -> Plan:
     if "slots" in meta and all({"slot", "back"} <= about.keys() for *_, about in edges):
         return exact.plan_of(file, _told_exactly(file, meta, nodes, edges))
     places = numbered(nodes)
-    graph: nx.MultiDiGraph[Any] = nx.MultiDiGraph(crs="the plane of a robot, in metres")
+    graph: nx.MultiDiGraph[Any] = nx.MultiDiGraph(crs="plane")
     for name, node in nodes.items():
         graph.add_node(places[name], **_position(node))
     again = 0
