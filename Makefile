@@ -1,5 +1,5 @@
 # make            set up, make the instances, print the paper's table beside ours
-# make test       run the tests; make test-long also those that take minutes (JOBS: processes)
+# make test       run the tests that are quick; make test-long runs all tests (JOBS: processes)
 # make mutate     change each rule in turn, and write docs/mutation.md (JOBS)
 # make lint       check style and types
 # make instances  make the batch that instances/batch.txt lists (try make -j2 instances)
@@ -92,7 +92,7 @@ $(BATCH)/%.lp: $(BATCH)/%.args $(MAKERS)
 	@eval "$(BIN)/topomap generate $$(sed 1q '$<') --output '$@'"
 
 test: $(TOOLS)
-	$(BIN)/pytest -n $(JOBS) -m 'not long'
+	$(BIN)/pytest -n $(JOBS) -m 'not slow and not long'
 
 test-long: $(TOOLS)
 	$(BIN)/pytest -n $(JOBS) --tried results/tried.json

@@ -283,6 +283,7 @@ NAMED = EXPERIENCES | WORLDS
 NONE = frozenset()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", NAMED)
 def test_named(name):
     experience, truth = NAMED[name], Truth(NAMED[name])

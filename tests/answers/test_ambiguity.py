@@ -261,6 +261,7 @@ def there_and_back(walk, draw, steps):
     return tuple(turns)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("number", "seed"), [(1200, 5), pytest.param(10_000, 6, marks=pytest.mark.long)]
 )

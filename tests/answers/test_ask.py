@@ -106,6 +106,7 @@ def drawn(draw, number, axiom=True):
             return experience, truth
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("cases", [30, pytest.param(1000, marks=pytest.mark.long)])
 def test_answers_are_those_of_all_maps(cases):
     for number in range(cases):
@@ -123,6 +124,7 @@ def test_answers_are_those_of_all_maps(cases):
         assert found.kind == ("optimal" if truth.best(True) else "best so far")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("cases", [40, pytest.param(1000, marks=pytest.mark.long)])
 def test_answers_without_the_path_axiom(cases):
     """Loops, circular paths and paths that cross themselves count right."""
@@ -186,6 +188,7 @@ def consequences(parts, facts, mode):
     return shown
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("cases", [20, pytest.param(300, marks=pytest.mark.long)])
 def test_stock_clingo_says_the_same(cases):
     for number in range(cases):
@@ -246,6 +249,7 @@ PAPER = [
 ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("name", "arguments", "known"), PAPER)
 def test_papers_instances(topomap, tmp_path, name, arguments, known):
     instance = ROOT / f"instances/grid-{name}.lp"
@@ -266,6 +270,7 @@ def test_papers_instances(topomap, tmp_path, name, arguments, known):
     assert len(lines) == len(maps) + len(known) + 1
 
 
+@pytest.mark.slow
 def test_what_is_asked_of_the_4x4_snake_is_what_its_maps_say():
     experience = GRIDS["4x4-snake"]
     query = Query(frozenset(["planar", "closed"]), 16)
@@ -456,6 +461,7 @@ def test_answers_do_not_depend_on_what_is_put_off(monkeypatch):
         assert None not in found[0]
 
 
+@pytest.mark.slow
 def test_no_map(topomap):
     instance = ROOT / "instances/grid-3x3-snake.lp"
     for extra in (["--bound=3"], ["--bound=3", "--optimal"]):

@@ -70,6 +70,7 @@ def agree_without_axiom(seen):
         assert ahead(seen, *parts, "no_path_axiom") == wanted, (parts, facts)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("block", range(3))
 def test_random_worlds(block):
     kinds = Counter()
@@ -84,6 +85,7 @@ def test_random_worlds(block):
     assert min(kinds.values()) > 1, kinds
 
 
+@pytest.mark.slow
 def test_without_the_path_axiom():
     for number in range(25):
         seen = bent(random.Random(f"bent without the axiom {number}"), 6)
@@ -114,6 +116,7 @@ def test_a_bearing_that_is_one_off(tolerance, maps):
     assert len([*topomap.solve(topomap.read(DRIFT, tolerance=tolerance))]) == maps
 
 
+@pytest.mark.slow
 def test_opposite_gateways_are_on_one_path_unless_pairs_are_told():
     """Telling of each visit that opposite gateways are on one path changes nothing."""
     seen = topomap.read(ROOT / "instances/grid-3x3-snake.lp")

@@ -44,6 +44,7 @@ def agree_on_errors(draw, steps=10, marker=False):
         assert at is not sound or not of_steps[0]
 
 
+@pytest.mark.slow
 def test_the_checkers_agree_on_errors():
     for number in range(60):
         agree_on_errors(random.Random(f"errors {number}"), marker=number % 3 == 2)
@@ -113,6 +114,7 @@ def without_the_axiom(cases, name, most):
     return judged
 
 
+@pytest.mark.slow
 def test_maps_are_judged_without_the_path_axiom():
     assert without_the_axiom(250, "classes", 1) == 250
 
@@ -146,6 +148,7 @@ AXIOMS = {  # and defaults, by the independent search
 }
 
 
+@pytest.mark.slow
 def test_which_axioms_and_defaults_a_map_breaks():
     """All of them at once, with what the map has of each; and none is a fault unless demanded."""
     assert {*AXIOMS} == {"path axiom", *PROPERTIES}

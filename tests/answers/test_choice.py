@@ -31,6 +31,7 @@ def facts(path, rows, columns, route, **options):
     return str(path)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("file", "options", "way", "number"),
     [
@@ -67,6 +68,7 @@ def test_many_maps_of_one_tree_are_handed_over_as_they_are_found(monkeypatch):
     assert (len(answer), answer.by) == (545, "search")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("slow", ["search", "clingo"])
 def test_time_decides_nothing(inside, monkeypatch, tmp_path, slow):
     """The answer has the same bytes when one of the two ways is slowed down."""
@@ -216,6 +218,7 @@ def test_a_long_log_of_which_one_hypothesis_lives_is_searched():
     assert (trial.by, trial.whole, len(trial.maps)) == ("search", True, 1)
 
 
+@pytest.mark.slow
 def test_a_file_can_be_resumed_whichever_way_gives_its_maps(tmp_path):
     """A run that is cut by its limit, and one that goes on with it."""
     for number, words in enumerate(([SMALL], [SNAKE, "--bound", "16", "--planar"], [SNAKE])):
@@ -254,6 +257,7 @@ def test_an_unknown_way_is_refused():
     assert main(["solve", SMALL, "--by", "guess"]) == 2
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("given_up", [False, True])
 @pytest.mark.parametrize("large", [False, True])
 def test_an_open_map_that_comes_first_hides_no_other(monkeypatch, large, given_up):
@@ -296,6 +300,7 @@ def test_an_open_map_that_comes_first_hides_no_other(monkeypatch, large, given_u
     assert bool(meanwhile["given up"]) is given_up
 
 
+@pytest.mark.slow
 def test_the_walks_on_which_an_open_map_hid_the_closed_ones():
     for seed, kind in ((110, "optimal"), (6, "best so far")):
         walk = instance(grid(4, 4), "walk", steps=36, seed=seed).experience
@@ -305,6 +310,7 @@ def test_the_walks_on_which_an_open_map_hid_the_closed_ones():
         assert {one.at for one in found[0]} == {one.at for one in found[1]}
 
 
+@pytest.mark.slow
 def test_an_open_map_that_is_given_at_the_time_limit_is_called_so(inside, monkeypatch, tmp_path):
     """Nothing is said of what closed maps cost; and where closed maps are asked for, and not the
     optimal ones, it is not given."""

@@ -42,6 +42,7 @@ def case(number):
     return experience, parts, bound, horizon
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("listed", [circumscription.LISTED, 0, 2])
 @pytest.mark.parametrize(
     "numbers", [range(70), pytest.param(range(70, 520), marks=pytest.mark.long)]
@@ -82,6 +83,7 @@ def test_names_are_those_of_the_definition():
             assert tuple(extent(experience, at)) == hypothesis.names()
 
 
+@pytest.mark.slow
 def test_the_first_map_of_stock_clingo_is_circumscribed_and_can_be_checked(tmp_path):
     for number in range(15):
         experience, *_ = case(number)
@@ -108,6 +110,7 @@ def test_the_first_map_of_stock_clingo_is_circumscribed_and_can_be_checked(tmp_p
         assert "UNSATISFIABLE" in again.stdout
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "column",
     [
@@ -128,6 +131,7 @@ def test_the_page_has_the_figures_of_the_columns(column):
     assert re.search(row, PAGE, re.MULTILINE)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("listed", [circumscription.LISTED, 0])
 def test_walks_that_are_solved_in_phases(listed, monkeypatch):
     """Closed maps of at most so many places, from forty steps on."""
@@ -198,6 +202,7 @@ def test_the_closed_example_of_the_page(tmp_path):
     assert len(truth.least(lambda h: h.cost(), [one.at for one in maps])) == 1
 
 
+@pytest.mark.slow
 def test_the_functions(tmp_path):
     file = tmp_path / "forks.lp"
     file.write_text(FORKS)

@@ -27,6 +27,7 @@ def has_closed(world, parts, bound, axiom):
     return False
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seeds", [range(n, n + 25) for n in range(0, 200, 25)])
 def test_it_is_what_the_oracle_says(seeds):
     for seed in seeds:

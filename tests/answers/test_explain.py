@@ -220,6 +220,7 @@ def demand_gathered(experience, answer, bound):
 LONG = [pytest.param(first, first + 220, marks=pytest.mark.long) for first in range(20, 1120, 220)]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("first", "end"), [(0, 20), *LONG])
 def test_verdicts_and_reasons(tmp_path, first, end, record_property):
     verdicts, tried, kinds, long = {}, 0, set(), end - first > 20
@@ -282,6 +283,7 @@ def least_cases():
     yield "place_twice", loop, "same(0,1)", ["boundary"]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("cases", [25, pytest.param(500, marks=pytest.mark.long)])
 def test_verdicts_without_the_path_axiom(tmp_path, cases, record_property):
     """A way may come back to a place, but not to the gateway by which it was left."""
@@ -338,6 +340,7 @@ SOONER = [line for line in LINES if any(word in line for word in ("(0,6)", "(5,3
 LATER = [pytest.param(line, marks=pytest.mark.long) for line in LINES if line not in SOONER]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("line", [*SOONER, *LATER])
 def test_words_of_the_grids(tmp_path, line):
     """The kinds of reasons that are there, told from a map; stock clingo says the same of all of
@@ -372,6 +375,7 @@ def test_words_of_the_grids(tmp_path, line):
         assert done.returncode in ([20] if left_out is None else [10, 30]), done.stderr
 
 
+@pytest.mark.slow
 def test_stock_clingo_gives_up_the_fewest_reasons(tmp_path):
     """As encodings/explain.lp says: none where there is a map; else as few as brute force."""
     files = [ROOT / f"encodings/{part}.lp" for part in ("topomap", "explain")]
@@ -407,6 +411,7 @@ def gathered_of(name, experience):
     return {one for one in [*whole, "travelled", "bound"] if name in held.singles(one)}
 
 
+@pytest.mark.slow
 def test_a_walk_of_thirteen_steps_without_a_map(tmp_path):
     """Stock clingo says that the few reasons are enough; that no two reasons are; and that random
     sets of one reason fewer are not."""
@@ -456,6 +461,7 @@ def test_what_is_told_of_one_step_is_gathered():
     assert told_gathered(ring, "view(1)", None).steps == (1,)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("cases", [7, pytest.param(200, marks=pytest.mark.long)])
 def test_reasons_why_there_is_no_map(tmp_path, cases, record_property):
     """Each is needed, as the definitions of the rules say; they are enough, as all assignments show
@@ -530,6 +536,7 @@ def test_words_of_the_marker(tmp_path, turn, seen, words):
     assert told_marker(experience, 2).words.endswith("which it put down after step 0")
 
 
+@pytest.mark.slow
 def test_the_answer_in_lines(topomap, tmp_path):
     done = topomap("explain", "instances/grid-3x3-snake.lp", "same(3,8)")
     assert done.returncode == 0
@@ -582,6 +589,7 @@ def test_bad_calls(topomap, arguments, fault):
     assert not done.stdout
 
 
+@pytest.mark.slow
 def test_a_time_limit_leaves_what_is_known(topomap, tmp_path):
     call = ["explain", "instances/manhattan-tour40-signs30.lp", "places > 20", "--closed", "--json"]
     done = topomap(*call, "--timeout", "2")
@@ -595,6 +603,7 @@ def test_a_time_limit_leaves_what_is_known(topomap, tmp_path):
     assert done.stdout == "same(3,12): not settled\npartial: timeout\n"
 
 
+@pytest.mark.slow
 def test_the_same_input_gives_the_same_bytes(topomap):
     call = ["explain", "instances/grid-3x3-snake.lp", "same(0,6)", "--perpendicular", "--json"]
     assert topomap(*call).stdout == topomap(*call).stdout

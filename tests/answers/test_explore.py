@@ -72,6 +72,7 @@ def holds(among, made):
     assert made.left == max(untold)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("cases", [150, pytest.param(3000, marks=pytest.mark.long)])
 def test_no_walk_does_better(cases):
     kinds = {}
@@ -102,6 +103,7 @@ def test_no_walk_does_better(cases):
     assert min(kinds["apart"], kinds["pending"]) > cases / 10, kinds
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("cases", [60, pytest.param(600, marks=pytest.mark.long)])
 def test_no_walk_with_a_marker_does_better(cases):
     drops = 0
@@ -126,6 +128,7 @@ def test_no_walk_with_a_marker_does_better(cases):
     TRIED["plans against all walks"] += cases
 
 
+@pytest.mark.slow
 def test_where_the_search_ends_early_clingo_goes_on(monkeypatch):
     """What the search for the length, and for pairs, can no longer tell is left to clingo."""
     kinds = set()
@@ -145,6 +148,7 @@ def test_where_the_search_ends_early_clingo_goes_on(monkeypatch):
     assert kinds >= {("apart", True), ("apart", False), ("pending", True), ("pending", False)}
 
 
+@pytest.mark.slow
 def test_where_clingo_is_stopped_the_walk_is_the_same(monkeypatch):
     """A walk that is proved to be best by the search for the length is of the least turns."""
     walks = []
@@ -155,6 +159,7 @@ def test_where_clingo_is_stopped_the_walk_is_the_same(monkeypatch):
     assert walks[0] == walks[1]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("marker", [False, True])
 @pytest.mark.parametrize("cases", [100, pytest.param(1500, marks=pytest.mark.long)])
 def test_why_no_walk_tells_them(cases, marker):
@@ -197,6 +202,7 @@ def test_why_no_walk_tells_them(cases, marker):
     assert all(reasons.values()), reasons
 
 
+@pytest.mark.slow
 def test_closed_maps_are_bisimilar_as_refinement_says():
     """All pairs, against TopologicalMap.indistinguishable: closed hypotheses, and others."""
     counts = {True: 0, False: 0}
@@ -328,6 +334,7 @@ def test_a_marker_that_is_out_is_seen():
     assert best(lies)[0][0] == 1
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("most", [1, 2, 5])
 def test_too_many_classes_are_told(monkeypatch, most):
     monkeypatch.setattr(explore, "MOST_CLASSES", most)
@@ -339,6 +346,7 @@ def test_too_many_classes_are_told(monkeypatch, most):
         assert made.fault == (None if made.proved else "maps")
 
 
+@pytest.mark.slow
 def test_too_many_states_are_told(monkeypatch):
     experience = read(ROOT / "instances/manhattan-tour20.lp").cut(14)
     among = [standing(experience, at) for at in maps(experience)]
@@ -350,6 +358,7 @@ def test_too_many_states_are_told(monkeypatch):
     assert made.left >= whole.left
 
 
+@pytest.mark.slow
 def test_many_maps_that_are_few():
     """Many that are the same up to names cost little more than one of them."""
     among, _ = optimal(4)
@@ -395,6 +404,7 @@ def by_clingo(files, facts, *options):
     return found
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("marker", [0, 1])
 def test_stock_clingo_gives_the_walk(topomap, tmp_path, marker):
     """From what --facts prints, and nothing of ours."""
@@ -577,6 +587,7 @@ def test_a_time_limit_ends_it(topomap, tmp_path):
     assert (made["complete"], made["fault"]) == (False, "timeout")
 
 
+@pytest.mark.slow
 def test_a_time_limit_of_the_planning_keeps_the_maps(monkeypatch):
     among, _ = optimal(4)
     late = quiet(0.001)

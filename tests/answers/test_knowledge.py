@@ -116,6 +116,7 @@ def test_step_by_step(block):
         TRIED["explorations with more than views, step by step"] += 1
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("block", range(2))
 def test_phases(block):
     """What the phases leave has the maps of the whole theory."""
@@ -135,12 +136,14 @@ def test_phases(block):
         assert maps == {*Truth(seen).final}, seen.facts()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("block", range(4))
 def test_random_worlds(block):
     found = [agree(informed(random.Random(f"informed {block}/{n}"), 9)).final for n in range(60)]
     assert sum(len(maps) > 1 for maps in found) > 5
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("block", range(4))
 def test_several_logs(block):
     """And second looks, and markers with names."""
@@ -169,6 +172,7 @@ def test_many_random_worlds(block):
                 TRIED[f"experiences left out that have more than {MOST} maps"] += 1
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", [informed, logs])
 def test_why(kind):
     """Verdicts are those of brute force, and reasons are verified by the explainer itself."""
@@ -187,6 +191,7 @@ def test_why(kind):
             TRIED[f"reasons told: {reason.kind}"] += 1
 
 
+@pytest.mark.slow
 def test_words():
     """What is said of each kind of reason."""
     ring = Experience(4, [[0, 1], [0, 3], [0, 3], [0, 3], [0, 3]], [0, 3, 3, 3])
@@ -222,6 +227,7 @@ def test_words():
     assert any("does not see the marker coin, which lies at place 0" in one for one in told), told
 
 
+@pytest.mark.slow
 def test_what_is_assumed():
     """Only the maps in which a statement holds are left, in each way to ask for them."""
     seen = topomap.read(ROOT / "instances/grid-3x3-snake.lp")
@@ -244,6 +250,7 @@ def test_what_is_assumed():
     assert topomap.assume(seen, "same(3,3)") == seen
 
 
+@pytest.mark.slow
 def test_what_is_assumed_is_a_reason():
     """Without it there would be a map, so an explanation names it, in the words of a statement."""
     seen = topomap.read(ROOT / "instances/grid-3x3-snake.lp")
@@ -286,6 +293,7 @@ def test_who_does_not_ask_the_encodings_refuses_what_is_assumed():
         Experience(4, [[0]], [], assumed=[("planar(", True)])
 
 
+@pytest.mark.slow
 def test_a_marker_may_have_any_name():
     """The marker that has no name is not one of those that have one, whatever they are called."""
     for name in ("()", "unnamed", "none", "named(x)", '"a b"', "0"):
@@ -322,6 +330,7 @@ PAGE = {  # semantics.md, "A compass" and "Odometry": all maps, planar ones, clo
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("row", PAGE)
 def test_the_figures_of_the_page(row):
     """By clingo, and where they are few by the search, too (``counted`` demands it)."""
@@ -342,6 +351,7 @@ def test_the_table_of_the_page():
         assert row in text
 
 
+@pytest.mark.slow
 def test_two_logs_of_the_3x3_grid():
     """And two halves of the 4x4 snake, cut at step 15: by brute force."""
     world = grid(3, 3).map

@@ -54,6 +54,7 @@ def few_pairs(monkeypatch):
     of_steps.future_of.cache_clear()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(2))
 def test_of_a_beginning_alone_nothing_more_is_left_out(seed, few_pairs):
     """The same as the next one, where only the pairs of a beginning are looked at."""
@@ -80,6 +81,7 @@ def test_long_walks_have_the_maps_of_the_plain_tree(few_pairs):
     assert maps > 16
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(4))
 def test_what_is_left_out_is_in_no_answer(seed):
     """The same maps in the same order as the tree has that is not cut, on random worlds."""

@@ -50,6 +50,7 @@ def test_ten_thousand_random_experiences(block):
     test_random_experiences(range(1000 * (block + 1), 1000 * (block + 2)))
 
 
+@pytest.mark.slow
 def test_what_no_listing_ends():
     """The snake of the 4 x 5 grid: all its maps were counted by another program, too."""
     counts = topomap.count(instance(grid(4, 5), "snake").experience, merging=True)

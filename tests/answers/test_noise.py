@@ -98,6 +98,7 @@ def agree_with_brute_force(seen: Experience, most: int):
     return bool(every), any(not misread for _, misread in every)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "seeds", [range(12), pytest.param(range(12, 300), marks=pytest.mark.long)], ids=["few", "many"]
 )
@@ -192,6 +193,7 @@ def test_rule_holds_and_bites(case):
     assert least == said
 
 
+@pytest.mark.slow
 def test_without_misreadings_the_answers_are_those_without_noise():
     for seed in range(6):
         seen = random_experience(random.Random(f"quiet {seed}"), 8, marker=seed % 2 == 1)
@@ -217,6 +219,7 @@ RETRACED = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("size", "step", "misread"),
     [
@@ -244,6 +247,7 @@ def test_one_wrong_view_hides_every_map(size, step, misread):
     assert {step} == {t for t, _ in misread}
 
 
+@pytest.mark.slow
 def test_two_wrong_views():
     true, truth = back_and_forth(3, RETRACED[3])
     seen = true.corrected([(13, 2), (18, 0)])

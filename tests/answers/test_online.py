@@ -90,6 +90,7 @@ def test_each_step_of_the_worlds(name, planar, living):
     assert list(follow_all(WORLDS[name], planar, living=living))
 
 
+@pytest.mark.slow
 @WAYS
 @pytest.mark.parametrize("cases", [30, pytest.param(800, marks=pytest.mark.long)])
 def test_each_step_of_random_experiences(cases, living):
@@ -100,6 +101,7 @@ def test_each_step_of_random_experiences(cases, living):
         assert list(follow_all(experience, draw.random() < 0.5, bound, living=living))
 
 
+@pytest.mark.slow
 @WAYS
 @pytest.mark.parametrize("cases", [30, pytest.param(300, marks=pytest.mark.long)])
 def test_each_step_without_the_path_axiom(living, cases):
@@ -134,6 +136,7 @@ def test_each_step_without_the_path_axiom(living, cases):
             TRIED["followed maps that break the path axiom"] += broken
 
 
+@pytest.mark.slow
 @WAYS
 @pytest.mark.parametrize("cases", [30, pytest.param(1500, marks=pytest.mark.long)])
 def test_each_step_of_walks_with_a_marker(living, cases):
@@ -148,6 +151,7 @@ def test_each_step_of_walks_with_a_marker(living, cases):
     assert told > cases // 5  # in so many the marker has refuted something
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "planar", "bound"),
     [
@@ -180,6 +184,7 @@ def test_the_papers_instances(name, planar, bound):
         assert {(one.kind, one.cost) for one in found} == {(status.kind, status.cost)}
 
 
+@pytest.mark.slow
 @WAYS
 def test_steps_that_were_taken_back_leave_no_trace(living):
     for number in range(12):
@@ -263,6 +268,7 @@ def said(known, experience):
     return known, maps
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("cases", [25, pytest.param(600, marks=pytest.mark.long)])
 def test_clingo_and_the_search_say_the_same(cases, monkeypatch):
     """Whatever is known besides views, with steps that are taken back, and where the one takes over
@@ -305,6 +311,7 @@ def test_clingo_and_the_search_say_the_same(cases, monkeypatch):
                 before = known[0]
 
 
+@pytest.mark.slow
 def test_clingo_takes_over_and_gives_back(monkeypatch):
     monkeypatch.setattr(online, "FEWER", 1)
     experience = read(ROOT / "instances/manhattan-tour40-signs30.lp").cut(23)
@@ -375,6 +382,7 @@ def test_boundaries_are_those_of_the_definition():
     assert broken > 30
 
 
+@pytest.mark.slow
 def test_stock_clingo_drives_it():
     """As its header says, and with the whole instance given at once."""
     experience = read(ROOT / "instances/grid-3x3-snake.lp")

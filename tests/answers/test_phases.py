@@ -177,6 +177,7 @@ def squared(draw, most):
     return (*toured(draw, most), draw.sample(MORE, 3), draw.choice([None] * 5 + [4, 6]))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("block", range(3))
 def test_random_worlds(block):
     """A third of the queries, and more, have an answer."""
@@ -188,6 +189,7 @@ def test_random_worlds(block):
     assert TRIED["queries in phases that had an answer"] >= answered + 6
 
 
+@pytest.mark.slow
 def test_streets():
     for number in range(10):
         experience, _ = toured(random.Random(f"streets {number}"), 18, crossing_streets)
@@ -223,6 +225,7 @@ def agree_on_bounds(number, most):
         agree(experience, horizon, BOUNDED, False, places, ("closed",))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("block", [0, pytest.param(1, marks=pytest.mark.long)])
 def test_bounds(block):
     for number in range(5):
@@ -260,6 +263,7 @@ def by_lines(monkeypatch):
     monkeypatch.setattr(phases._Phases, "visits", lambda work: visits(work) and False)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("tries", [2, phases.TRY_HARD])
 def test_lines(monkeypatch, tries):
     """Settled or given up."""
@@ -294,6 +298,7 @@ def refuses_what_is_not_planar(draw, most):
     return len(every - left)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("often", [1, pytest.param(plane.EVERY, marks=pytest.mark.long)])
 def test_planarity_by_clauses(monkeypatch, often):
     monkeypatch.setattr(plane, "EVERY", often)
@@ -345,6 +350,7 @@ TOLD = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", [*SQUARES, *TOLD])
 def test_named_worlds(name):
     """At any horizon near the end. Those of ``TOLD`` have a closed perpendicular map."""
@@ -435,6 +441,7 @@ def are_true(experience, chain):
             )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("chain", CHAINS, ids="-".join)
 def test_what_a_phase_finds_is_true(chain):
     for number in range(6):
@@ -449,6 +456,7 @@ def test_what_a_phase_finds_is_often_true(chain):
         are_true(toured(random.Random(f"many claims {number}"), 32)[0], chain)
 
 
+@pytest.mark.slow
 def test_what_contradicts_itself_has_no_map():
     """Steps that go straight back and see something else: what the phases leave of that has the
     maps of the whole theory, most often none."""
@@ -489,6 +497,7 @@ def test_each_phase_finds_something():
     assert {pair.name for pair in pairs} == {"comparable", "iff"}
 
 
+@pytest.mark.slow
 def test_the_snake_of_6x6():
     made = instance(grid(6, 6), "snake")
     assert found(solving.hypotheses, made.experience, (*SQUARE, "planar")) == {made.truth}
@@ -535,6 +544,7 @@ def test_the_snake_of_8x8(topomap, tmp_path):
     assert [[tuple(dstate) for _, *dstate in each["at"]] for each in answer["maps"]] == [[*truth]]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("late", [False, True])
 def test_phases_end_when_they_are_told(monkeypatch, late):
     """Before a call of clingo or in its midst, at whichever call: the next is not begun."""

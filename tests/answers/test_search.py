@@ -36,6 +36,7 @@ def switches(column):
     )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("order", ["breadth", "depth"])
 @pytest.mark.parametrize(
     "column", COLUMNS, ids=lambda c: f"{c['environment']}{'-planar' * c['planarity']}"
@@ -184,6 +185,7 @@ def planar_nodes(experience, places=None):
     return branching(traversal.root(experience, Query(frozenset(["planar"]), places)), QUIET)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("column", COLUMNS[1::2], ids=lambda c: c["environment"])
 def test_equation_1_on_the_papers_environments(column):
     experience = read(ROOT / f"instances/{column['instance']}.lp")
@@ -259,6 +261,7 @@ def test_branching_of_an_experience_without_steps(topomap, tmp_path):
 # Beyond the paper's table
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("most", [100_000, pytest.param(4_000_000, marks=pytest.mark.long)])
 def test_the_committed_report_is_what_is_counted(most):
     """The smaller columns of docs/beyond.json, counted again; of the long ones, 4x4 without a

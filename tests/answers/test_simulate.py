@@ -89,6 +89,7 @@ def routed(made, start, experience):
         place, slot = made.links[place, out]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("number", "seed"), [(10, 1), pytest.param(300, 2, marks=pytest.mark.long)]
 )
@@ -198,6 +199,7 @@ def test_a_small_closed_map_with_exceptions_is_not_believed():
         assert robot.rivals(whole.cut(step), ALL, [best], Watch())
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("made", "parts"),
     [

@@ -417,6 +417,7 @@ def test_a_map_is_drawn_once(seen, some, finder, monkeypatch):
     assert len(drawn) == 1
 
 
+@pytest.mark.slow
 def test_a_picture_changes_nothing_of_the_process():
     text = f"""
 import os, topomap

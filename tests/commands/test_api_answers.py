@@ -93,6 +93,7 @@ def test_what_solve_refuses(seen):
         topomap.count(seen, genus=True)
 
 
+@pytest.mark.slow
 def test_from_a_thread(seen):
     """No signal handler is set, and none is needed."""
     came = []
@@ -107,11 +108,13 @@ def test_from_a_thread(seen):
     assert came == [0, 62]
 
 
+@pytest.mark.slow
 def test_by_processes(seen):
     assert {one.at for one in topomap.solve(seen, jobs=2)} == answers((), seen.facts())
     assert dict(topomap.count(seen, jobs=2)) == dict(topomap.count(seen))
 
 
+@pytest.mark.slow
 def test_misreadings():
     seen = topomap.read(ROOT / "instances/grid-3x3-misread.lp", noisy=True)
     assert not topomap.solve(seen)
@@ -119,6 +122,7 @@ def test_misreadings():
     assert best.misread == ((13, 2),)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("column", [column for column in COLUMNS if column["environment"] == "3x3"])
 def test_count_is_the_papers(column):
     seen = topomap.read(ROOT / f"instances/{column['instance']}.lp")
@@ -171,6 +175,7 @@ JUDGED = {  # what is judged, of which maps, with which options; and how many of
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("case", JUDGED)
 def test_check_is_the_command(inside, tmp_path, case):
     instance, asked, made, options, unsound = JUDGED[case]

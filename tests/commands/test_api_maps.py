@@ -130,6 +130,7 @@ def test_what_is_not_proved_is_not_said_to_be_best(made):
         assert Map(SEEN, Found(at, kind, (6, 9))).kind == kind
 
 
+@pytest.mark.slow
 def test_the_graph_is_what_export_writes(topomap, tmp_path):
     maps, file = tmp_path / "maps.json", tmp_path / "map.json"
     topomap("solve", GRID, "--closed", "--json", "-o", maps)
@@ -171,6 +172,7 @@ def test_maps_with_wrong_views_say_which(topomap):
 SLOW = [pytest.param(form, marks=pytest.mark.long) for form in ("png", "pdf")]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("form", ["svg", *SLOW])
 def test_a_drawing_is_the_same_bytes_again(tmp_path, form):
     files = [tmp_path / f"{number}.{form}" for number in (1, 2)]
@@ -188,6 +190,7 @@ def test_a_drawing_is_the_same_bytes_again(tmp_path, form):
         assert content.startswith({"png": b"\x89PNG", "pdf": b"%PDF"}[form])
 
 
+@pytest.mark.slow
 def test_threads_that_draw_at_once_draw_the_same(made):
     alone = [one._repr_svg_() for one in made[:2]]
     came = [None] * len(alone)
@@ -230,6 +233,7 @@ CALLS = [
 ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("world", "asked", "options"), CALLS)
 def test_a_robot_comes_to_what_the_command_writes(topomap, world, asked, options):
     made = elsewhere(lambda: simulate(*world, **asked))

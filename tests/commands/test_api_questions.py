@@ -46,6 +46,7 @@ def same(answer, command, instance):
     return json.loads(json.dumps(ours)) == command
 
 
+@pytest.mark.slow
 def test_replies_tell_what_they_come_to(seen):
     snake = seen(SNAKE)
     asked = topomap.ask(snake, "planar", "same(3,12)")
@@ -141,6 +142,7 @@ def test_what_ask_refuses(seen):
 # Reasons
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("statement", "options", "parts"),
     [

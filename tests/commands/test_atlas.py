@@ -104,6 +104,7 @@ def test_the_same_call_gives_the_same(made):
     assert made() == made()
 
 
+@pytest.mark.slow
 def test_seeds_and_starts(made):
     """The random walk hangs on the seed, the tour does not; both begin where they are told to."""
     steps = [[walk["steps"] for walk in made("--seed", n)["rows"][0]["walks"]] for n in range(8)]
@@ -130,6 +131,7 @@ def test_the_page_is_what_the_json_gives(inside, listed, tmp_path):
     assert again.read_text() == page
 
 
+@pytest.mark.slow
 def test_what_is_cut_is_named(inside, listed):
     page = inside("atlas", listed("grid 3 3"), "--most", 10, "--steps", 12, "--no-peers").stdout
     _, cut = page.split("## What was cut\n")
@@ -322,6 +324,7 @@ def cases():
         yield pytest.param(call, marks=[pytest.mark.long] * slow, id=" ".join(call))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("call", [*cases()])
 def test_the_counts_are_what_comes_out(inside, tmp_path, call):
     """But for those that the time has cut, then or now."""

@@ -58,6 +58,7 @@ def bench(tmp_path):
     return run
 
 
+@pytest.mark.slow
 def test_what_is_measured_is_written(bench, tmp_path):
     done, document, text = bench("--quick", "--only", "^3x3 snake, all maps", report=True)
     assert (done.returncode, done.stderr) == (0, "")
@@ -82,6 +83,7 @@ def test_what_is_measured_is_written(bench, tmp_path):
     assert (tmp_path / "docs/figures/scaling.svg").read_text().rstrip().endswith("</svg>")
 
 
+@pytest.mark.slow
 def test_a_wrong_number_has_no_speed(bench):
     done, document, text = bench(
         tasks=row(name="two", expected=1000) + row(name="one"), report=True
@@ -124,6 +126,7 @@ def test_a_map_that_is_not_there_is_skipped_and_a_way_that_fails_is_wrong(bench)
     assert "none.lp: not found" in done.stderr
 
 
+@pytest.mark.slow
 def test_the_time_limit_gives_a_floor(bench):
     done, document, text = bench("--limit", "0.5", "--others", "0.25", tasks=ENDLESS, report=True)
     assert done.returncode == 0
@@ -215,6 +218,7 @@ def test_exponents_are_fitted_to_what_grows():
     assert seconds["cut"] == [(80, 9)]
 
 
+@pytest.mark.slow
 def test_the_picture_has_the_same_bytes_each_time(tmp_path):
     points = [(x, 2.0 * x**3) for x in (10, 20, 40)]
     curve = {"series": "s", "x": "steps", "way": "work", "points": points, "cut": [(80, 9)]}
@@ -241,6 +245,7 @@ def test_rows_are_measured_again_into_what_there_is(bench):
     assert ": one.\n" in text
 
 
+@pytest.mark.slow
 def test_what_more_processes_gain_is_told_and_that_they_count_the_same(monkeypatch):
     monkeypatch.setattr(jobs, "TASKS", {"a task": ((3, 3), Query(frozenset(["planar"])))})
     (found,) = jobs.speedup(2)
@@ -269,6 +274,7 @@ def test_the_rows_are_those_of_the_table():
     }
 
 
+@pytest.mark.slow
 def test_the_rules_are_told_where_maps_are_listed(bench):
     _, document, _ = bench(
         "--quick", "--only", "^3x3 snake, closed, perpendicular", "--repeat", "1"
@@ -277,6 +283,7 @@ def test_the_rules_are_told_where_maps_are_listed(bench):
     assert all(of["rules"] > 1000 for way, of in only["ways"].items() if way != "search")
 
 
+@pytest.mark.slow
 def test_one_solve_is_measured_beside_its_two_ways(capsys, monkeypatch):
     """A row of the table; where the ways give different numbers it is wrong, and where solve takes
     much longer than the better one, its goal is missed."""

@@ -79,6 +79,7 @@ def test_several_instances(inside):
     assert [result["count"] for result in answer["results"]] == [2, 8]
 
 
+@pytest.mark.slow
 def test_no_map_is_status_1(inside):
     done = inside("solve", GRID, "--bound", "3", "--json")
     assert done.returncode == 1
@@ -96,6 +97,7 @@ def test_a_limit_is_status_3_and_says_so(topomap):
     assert "partial: limit" in topomap("solve", GRID, "--limit", "87").stdout
 
 
+@pytest.mark.slow
 def test_a_timeout_is_status_3_and_keeps_what_was_found(topomap):
     done = topomap("solve", LARGE, "--timeout", "1", "--json")
     answer = json.loads(done.stdout)
@@ -179,6 +181,7 @@ def test_an_interrupt_keeps_what_was_found(tmp_path, number):
     assert {path.name for path in tmp_path.iterdir()} - {"maps.json.part"} == {"maps.json"}
 
 
+@pytest.mark.slow
 def test_count(inside):
     done = inside("count", "instances/grid-3x4-paper.lp", "--planar", "--json")
     answer = json.loads(done.stdout)
@@ -188,6 +191,7 @@ def test_count(inside):
     assert "1,722" in inside("count", "instances/grid-3x4-paper.lp", "--planar").stdout
 
 
+@pytest.mark.slow
 def test_the_real_map_is_marked(topomap, tmp_path):
     truth = tmp_path / "truth.json"
     topomap("generate", "grid", "3", "3", "--route", "snake", "--truth", truth)
@@ -259,6 +263,7 @@ def test_bad_instances_are_refused_in_one_line(inside, tmp_path, text):
         assert BAD[text] in done.stderr
 
 
+@pytest.mark.slow
 def test_files_that_cannot_be_read_or_written(topomap, tmp_path):
     binary = tmp_path / "binary.lp"
     binary.write_bytes(b"\xff\xfe\x00")

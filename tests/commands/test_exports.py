@@ -94,6 +94,7 @@ def agrees(tmp_path, seen, scene):
     return verdict.sound
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", PAPER)
 def test_best_maps_of_the_instances_return(tmp_path, name):
     seen, scenes = optimal(name)
@@ -134,6 +135,7 @@ def kinds_of(scene):
     }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("cases", [25, pytest.param(1500, marks=pytest.mark.long)])
 def test_random_maps_return(tmp_path, cases):
     kinds = Counter()
@@ -357,6 +359,7 @@ def test_neato_draws_it_there(scene):
         )
 
 
+@pytest.mark.slow
 def test_facts_are_what_clingraph_reads(scene):
     from clingraph import Factbase, compute_graphs
 
@@ -473,6 +476,7 @@ def test_what_other_tools_add_is_left_out(tmp_path):
     assert json.loads(imports.import_map(str(file))) == returned(tmp_path, scene, "json")
 
 
+@pytest.mark.slow
 def test_the_commands(topomap, tmp_path):
     instance = "instances/grid-3x4-paper.lp"
     for form in ("graphml", "json"):

@@ -100,6 +100,7 @@ def test_each_subcommand_is_called():
     assert set(CALLS) == set(SUBCOMMANDS)
 
 
+@pytest.mark.slow
 def test_the_wheel_does_all_from_an_empty_folder(built, tmp_path):
     _, wheel = built
     programs = environment(tmp_path / "environment", wheel)
@@ -202,7 +203,7 @@ def test_the_sdist_makes_itself_and_runs_its_tests(built, tmp_path):
     subprocess.run(["make", ".venv/tools"], **call, check=True)
     chosen = "commands/test_cli", "theory/test_input", "theory/test_rules"
     files = [f"tests/{name}.py" for name in chosen]
-    done = subprocess.run([".venv/bin/pytest", "-m", "not long", *files], **call)
+    done = subprocess.run([".venv/bin/pytest", "-m", "not slow and not long", *files], **call)
     assert done.returncode == 0, done.stdout[-3000:]
 
 
@@ -259,6 +260,7 @@ NETWORK = """\
 """
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["plain.graphml", 'a street\'s $HOME `x` "%" ü.graphml'])
 def test_instances_are_made_again_when_their_network_changes(checkout, name):
     (checkout / ".venv").symlink_to(ROOT / ".venv")

@@ -180,6 +180,7 @@ def compassed(seen, dstates):
     )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("form", ["csv", "jsonl"])
 @pytest.mark.parametrize("frame", ["arrival", "north"])
 def test_walks_are_read_back(read, form, frame, record_property):

@@ -404,6 +404,7 @@ def test_coordinates_that_cannot_be_what_they_are_taken_for(tmp_path):
     assert "crs epsg:9999 is not known, and is taken to be of a plane (--degrees)" in said.lower()
 
 
+@pytest.mark.slow
 def test_ten_thousand_places_come_to_an_end(tmp_path):
     """A street, of which each dstate is told from the others by how far it is to the ends, and a
     star: what is asked of each place must not ask all others, which would take hours."""

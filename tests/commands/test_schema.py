@@ -160,6 +160,7 @@ def test_the_schema_is_one():
     Draft202012Validator.check_schema(SCHEMA)
 
 
+@pytest.mark.slow
 def test_what_commands_write_fits_the_schema(answers):
     for name, answer in answers:
         faults = [f"{one.json_path}: {one.message}" for one in validator(name).iter_errors(answer)]

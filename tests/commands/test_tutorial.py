@@ -54,6 +54,7 @@ def test_it_is_committed_without_outputs():
             assert (cell.outputs, cell.execution_count) == ([], None)
 
 
+@pytest.mark.slow
 def test_maps_are_counted_and_drawn(outputs):
     final = [expected("3x3", planarity)["final"] for planarity in (False, True)]
     assert printed(outputs["solve"]).splitlines() == [

@@ -350,6 +350,7 @@ def test_a_start_that_looks_like_an_arrival(judged):
     assert "turn(1) is 3" in warning
 
 
+@pytest.mark.slow
 def test_every_start_can_be_told_without_the_warning(inside, judged, tmp_path):
     """Counted from the gateway that is left by, the same exploration has as many maps."""
     seen = instance(grid(3, 3), "snake", facing=2).experience
@@ -477,6 +478,7 @@ def of_validate(file):
     return shown
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "seeds", [range(400), pytest.param(range(400, 12000), marks=pytest.mark.long)]
 )

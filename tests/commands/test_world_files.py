@@ -638,6 +638,7 @@ def test_what_cannot_be_written_is_refused():
         world_text(odd, "dot")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("form", ["graphml", "json", "tmap2"])
 def test_exported_maps_become_the_worlds_that_they_show(tmp_path, form):
     instance = ROOT / "instances/grid-3x3-snake.lp"
@@ -686,6 +687,7 @@ def test_the_command_explores_each_file(file):
     assert any(seen.landmarks)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("end", FORMS)
 def test_the_world_that_is_explored_is_written(tmp_path, end):
     call = "topomap", "generate", "grid", "2", "3", "--route", "tour", "--signs", "1"
@@ -700,6 +702,7 @@ def test_the_world_that_is_explored_is_written(tmp_path, end):
     assert topomap.world(tmp_path / f"again{end}").points == back.points != {}
 
 
+@pytest.mark.slow
 def test_a_world_that_cannot_be_written_leaves_no_file(tmp_path):
     call = "topomap", "generate", "grid", "2", "2", "--route", "tour"
     for options, said in (

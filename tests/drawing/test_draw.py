@@ -220,6 +220,7 @@ def soon(number):
     return [n if n != 4 else pytest.param(n, marks=pytest.mark.long) for n in range(number)]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("number", soon(12))
 def test_planar_maps_are_drawn_without_crossings(number):
     scene = some_map(number, "planar")
@@ -229,6 +230,7 @@ def test_planar_maps_are_drawn_without_crossings(number):
     assert number == 4 or legible(scene)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("number", soon(10))
 def test_of_other_maps_the_links_that_cross_are_drawn_so(number):
     scene = some_map(number)
@@ -271,6 +273,7 @@ def test_a_link_crosses_as_few_as_can_be(number):
         assert least > 0 or number
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", WORLDS)
 def test_named_worlds(name):
     found = list(traversal.hypotheses(WORLDS[name], Query(), QUIET))
@@ -292,6 +295,7 @@ def test_many_maps(block):
     assert sum(map(legible, found)) >= 0.9 * len(found)  # in large faces a tree may be small
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("rows", "columns"), [(2, 2), (3, 4), (5, 5)])
 def test_a_grid_looks_like_a_grid(rows, columns):
     """Its first row from left to right, its links of one length, its corners the square ones."""
@@ -362,6 +366,7 @@ def test_faces_are_round_their_numbers():
             assert round_it == [f"face-{index}"] * (index - 1 != laid.outer)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("number", soon(6))
 def test_steps_are_on_the_right_of_their_ways(number):
     scene = some_map(number)
@@ -400,17 +405,19 @@ def test_the_same_bytes_for_the_same_map(tmp_path):
         assert one.read_bytes() == other.read_bytes()
 
 
+@pytest.mark.slow
 def test_maps_from_a_file_or_a_pipe(tmp_path, topomap, inside):
     maps = tmp_path / "maps.json"
     assert not inside("solve", GRID, "--optimal", "--json", "-o", maps).returncode
     pictures = [tmp_path / name for name in ("a.svg", "b.svg")]
+    options = "--map", "1", "--timeout", "100"
     for source, picture in zip((maps, GRID), pictures, strict=True):
-        assert not inside("draw", source, "--map", "1", "-o", picture).returncode
+        assert not inside("draw", source, *options, "-o", picture).returncode
     at = [json.loads(maps.read_text())["maps"][n]["at"] for n in (0, 1)]
     same = pictures[0].read_bytes() == pictures[1].read_bytes()
     assert same == (at[0] < at[1])
     piped = tmp_path / "piped.svg"
-    call = "draw", "-", "--map", "1", "-o", piped
+    call = "draw", "-", *options, "-o", piped
     assert not topomap(*call, input=maps.read_text()).returncode
     assert pictures[0].read_bytes() == piped.read_bytes()
 
@@ -425,6 +432,7 @@ def odd(name):
     return name
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("form", FORMATS)
 def test_any_text_can_be_drawn(tmp_path, topomap, form):
     """As it is, without a word on stderr."""
@@ -455,6 +463,7 @@ def test_landmarks_in_words():
     assert words.signs({'"a b"', '"c"', '"d e f g h i j"'}) == "a b, c, d e f g…"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["a", "a" * 200, "many words " * 9, "W" * 90, "日" * 60])
 def test_no_text_is_cut_off(tmp_path, name):
     """Nor is a title over another one."""
@@ -510,6 +519,7 @@ def test_landmarks_are_in_the_widest_gap():
             assert "sign-" not in one + other, (one, other)
 
 
+@pytest.mark.slow
 def test_titles_tell_how_many_links_cross():
     scene = next(s for s in (some_map(n) for n in range(10)) if s.world.genus() > 0)
     crossing = len(layout(scene.world).crossing)

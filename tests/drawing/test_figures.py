@@ -18,6 +18,7 @@ NAMES = list(figures.figures(ROOT / "instances", QUIET))
 SOON = "circumscription", "first", "place", "figure1", "figure3", "equation1"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "name",
     [n if n in SOON else pytest.param(n, marks=pytest.mark.long) for n in NAMES],

@@ -110,6 +110,7 @@ def test_which_of_these_are_plain():
     assert layout(grid(12, 12).map, late=always).note == ""
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("places", [MOST_PLACES // 2, MOST_PLACES + 1])
 def test_a_large_map_is_drawn_plainly(places):
     """By counted work: that it ends is what is tested; places keep apart."""
@@ -139,6 +140,7 @@ def test_a_drawing_that_is_done_in_time_says_nothing():
     assert len(laid.faces) == 2
 
 
+@pytest.mark.slow
 def test_what_is_legible_when_it_is_late_is_taken():
     """Of a map with bends there are good drawings long before the best one."""
     world = linked("a0 b1 b0 c1 c0 a1")
@@ -194,6 +196,7 @@ def torus_file(folder):
     return folder / "torus.json"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "call", [("show",), ("draw", "-o", "map.svg"), ("export", "--format", "dot", "-o", "map.dot")]
 )
@@ -236,6 +239,7 @@ def test_what_ends_a_drawing_leaves_the_file_as_it_was(tmp_path):
     assert [one.name for one in tmp_path.iterdir()] == ["map.svg"]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_an_interrupted_drawing_leaves_no_file(tmp_path, number):
     scene = walk(grid(8, 8, "torus").map, 2000, random.Random(0))
@@ -259,6 +263,7 @@ def test_the_page_tells_the_limits():
     assert (NOTE in told, SEARCH, "seven tenths" in told) == (True, 0.7, True)
 
 
+@pytest.mark.slow
 def test_pictures_and_characters_of_a_plain_drawing():
     scene = walk(grid(4, 4, "torus").map, 400, random.Random(0))
     assert "drawn plainly" in svg(scene, always)
@@ -301,6 +306,7 @@ def test_where_no_optimal_map_is_found_in_time_some_map_is_shown(monkeypatch):
     assert [scene.kind for scene in found.scenes] == ["not proved to be best"]
 
 
+@pytest.mark.slow
 def test_the_page_says_which_pictures_are_plain(inside, tmp_path, monkeypatch):
     """One of the two best maps is not planar."""
     monkeypatch.setattr(chapter, "SHARE", 0.0)
@@ -313,6 +319,7 @@ def test_the_page_says_which_pictures_are_plain(inside, tmp_path, monkeypatch):
     assert f"genus 1, {NOTE}" in " ".join(page.read_text().split())
 
 
+@pytest.mark.slow
 def test_from_python(tmp_path):
     import topomap
 

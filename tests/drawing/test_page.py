@@ -113,6 +113,7 @@ def figures(seen, at):
     return f"{scene.title.splitlines()[1]}, the agent at place {place}, gateway {slot}"
 
 
+@pytest.mark.slow
 def test_numbers_are_those_of_clingo_and_of_the_paper(three):
     _, page = three
     seen = read(ROOT / GRID)
@@ -330,6 +331,7 @@ def test_shown_are_the_beginnings_of_the_best_and_the_cheapest():
             assert later[: step + 1] in found.shown
 
 
+@pytest.mark.slow
 def test_large_steps_are_looked_at_in_part(monkeypatch):
     """Then nothing is counted, but what is shown are hypotheses still."""
     monkeypatch.setattr("topomap.page.replay.MOST", 20)
@@ -355,6 +357,7 @@ def clockwise(drawn, world, place):
     return sorted(angle, key=angle.get)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "name", [GRID, pytest.param("instances/manhattan-tour20.lp", marks=pytest.mark.long)]
 )
@@ -441,6 +444,7 @@ def test_the_agent_is_seen_where_a_line_begins_twice():
     assert all(int(x) > shapes.RADIUS for x, _ in glyph)
 
 
+@pytest.mark.slow
 def test_agreement_of_maps():
     seen = read(ROOT / GRID)
     for parts in (("closed", "boundary", "minimal"), ("closed",), ("planar",)):
@@ -493,6 +497,7 @@ def hostile(folder):
     return file
 
 
+@pytest.mark.slow
 def test_nothing_of_an_instance_is_more_than_text(tmp_path):
     status, page = report(tmp_path / "page.html", hostile(tmp_path))
     assert status == 0
@@ -577,6 +582,7 @@ def test_a_page_of_maps_that_are_given(tmp_path, capsys):
         assert fault in told
 
 
+@pytest.mark.slow
 def test_each_map_names_what_it_breaks(tmp_path, capsys):
     """The best map of the oxbow breaks what check --all says, and its exceptions are named."""
     oxbow, out, maps = ROOT / "tests/cases/oxbow.lp", tmp_path / "page.html", tmp_path / "maps.json"
@@ -639,6 +645,7 @@ def test_bad_input_is_one_line(topomap, tmp_path, arguments, words):
     assert file.read_text() == "old"
 
 
+@pytest.mark.slow
 def test_no_map_and_no_step(tmp_path):
     status, page = report(tmp_path / "page.html", ROOT / GRID, "--bound", "3", "--horizon", "9")
     assert status == 1
@@ -656,6 +663,7 @@ def test_no_map_and_no_step(tmp_path):
     assert "1 map found: best so far" in page.text
 
 
+@pytest.mark.slow
 def test_fewer_maps_than_there_are(tmp_path):
     status, page = report(tmp_path / "page.html", ROOT / GRID, "--horizon", "4", "--maps", "0")
     assert status == 0
@@ -769,6 +777,7 @@ def demand(browser, step, truth):
     return got
 
 
+@pytest.mark.slow
 def test_replay_by_keys(shown, truth):
     from selenium.webdriver import ActionChains, Keys
 
@@ -800,6 +809,7 @@ def test_replay_by_keys(shown, truth):
         demand(shown, step, truth)
 
 
+@pytest.mark.slow
 def test_replay_by_pointer(shown, truth):
     from selenium.webdriver import ActionChains
 
@@ -924,6 +934,7 @@ def test_without_script_all_steps_are_there(browser, three):
     assert not [n for n in nodes if n[0] in ("slider", "button")]
 
 
+@pytest.mark.slow
 def test_hostile_landmarks_do_not_run(browser, tmp_path):
     from selenium.common.exceptions import NoAlertPresentException
 
@@ -939,6 +950,7 @@ def test_hostile_landmarks_do_not_run(browser, tmp_path):
     assert browser.execute_script("return document.scripts.length") == 1
 
 
+@pytest.mark.slow
 def test_no_text_is_cut_off(browser, tmp_path):
     """Nor are landmarks over each other or on places, and they are short, without quotes."""
     signs = ['"$x^$_{"', 'f("a$b")', '"日本"', f'"{"W" * 200}"', '"many more letters"', '"b"']
@@ -970,6 +982,7 @@ def test_no_text_is_cut_off(browser, tmp_path):
         assert apart, (one, other)
 
 
+@pytest.mark.slow
 def test_several_explorations_on_one_page(browser, tmp_path):
     from selenium.webdriver import ActionChains, Keys
 

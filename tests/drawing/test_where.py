@@ -114,6 +114,7 @@ def test_streets_are_where_they_are(seed):
         assert off(scene.where(), truth) < most
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(8))
 def test_streets_are_drawn_where_they_are(seed):
     """Exactly in their order, without crossings, not under places; where this lets them be."""
@@ -129,6 +130,7 @@ def test_streets_are_drawn_where_they_are(seed):
     check(scene)
 
 
+@pytest.mark.slow
 def test_most_streets_are_drawn_where_they_are():
     """Three quarters of them at least, in a drawing of few steps."""
     drawn = []
@@ -189,6 +191,7 @@ def test_characters_are_turned_by_quarters():
     assert (round(x), round(y)) == (1, 0)  # else the first way leads to the right
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("block", range(4))
 def test_no_line_passes_under_a_place(block):
     """Of pictures that have time; of plain ones it is said if a line does."""
@@ -315,6 +318,7 @@ def test_a_world_with_loops_is_known_again(tmp_path):
         assert "no part" not in said
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("command", ["draw", "show", "export"])
 def test_like_on_the_command_line(town, tmp_path, command):
     file, explored_file, *_ = town
@@ -338,6 +342,7 @@ def test_like_on_the_command_line(town, tmp_path, command):
         assert done.stdout != usual
 
 
+@pytest.mark.slow
 def test_a_world_that_is_another_is_said_in_one_line(town, tmp_path):
     picture = tmp_path / "a.svg"
     call = "topomap", "draw", "instances/grid-3x3-snake.lp", "--planar", "-o", picture

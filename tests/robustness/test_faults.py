@@ -127,6 +127,7 @@ SOON = [(name, range(1)) for name in ("solve", "count")]
 LATER = [pytest.param(name, range(20), marks=pytest.mark.long) for name in COMMANDS]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("name", "seeds"), [*SOON, *LATER])
 def test_strikes(tmp_path, name, seeds, record_property):
     hits = strikes(name, COMMANDS[name], tmp_path, seeds, again=1 if len(seeds) == 1 else 0.3)
@@ -207,6 +208,7 @@ def copy(tmp_path):
     return tmp_path
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("batch", "kills"),
     [
@@ -266,6 +268,7 @@ def test_killed_batches(copy, batch, kills, record_property):
     record_property("kills of make", hits)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seeds", [range(2), pytest.param(range(30), marks=pytest.mark.long)])
 def test_time_limits(seeds, record_property):
     """A partial answer says so, and what it holds is as in the whole one."""
@@ -317,6 +320,7 @@ def least_memory():
     return next(mb for mb in range(20, 500, 5) if not confined(mb * 1024, *call)[0])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "extra", [[60], pytest.param(range(0, 300, 40), marks=pytest.mark.long)], ids=len
 )
@@ -358,6 +362,7 @@ def test_want_of_memory(tmp_path, extra, record_property):
     record_property("runs out of memory", failed)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "call",
     [

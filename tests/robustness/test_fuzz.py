@@ -369,6 +369,7 @@ def feed(tmp_path, monkeypatch):
 CASES = [240, pytest.param(8000, marks=pytest.mark.long)]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("cases", CASES)
 def test_spoilt_files(feed, tmp_path, cases, record_property):
     refused = dict.fromkeys(READERS, 0)
@@ -462,6 +463,7 @@ def command_line(draw):
     return [*path, *(word for group in words for word in group)]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("cases", CASES)
 def test_random_command_lines(feed, cases, record_property):
     statuses = [

@@ -421,6 +421,7 @@ def test_a_partial_page_claims_nothing(inside, tmp_path, way):
 # The format
 
 
+@pytest.mark.slow
 def test_documents_of_another_format_are_refused_in_one_line(inside, tmp_path):
     """Those that say none, as what is written by hand, are read."""
     maps = tmp_path / "maps.json"

@@ -78,6 +78,7 @@ def ordered_text(text):
     return sorted(re.sub(r"^map \d+|,$", "", line) for line in text.splitlines())
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", [slow(name) for name in LONG_RUNS])
 def test_a_run_that_was_cut_goes_on(tmp_path, monkeypatch, name):
     whole, file = tmp_path / "whole", tmp_path / "file"
@@ -141,6 +142,7 @@ def test_whoever_resumes_comes_to_the_same(tmp_path, monkeypatch):
         file.unlink()
 
 
+@pytest.mark.slow
 def test_without_resume_a_run_begins_anew(tmp_path, monkeypatch):
     file = tmp_path / "count.txt"
     with monkeypatch.context() as patch:
@@ -153,6 +155,7 @@ def test_without_resume_a_run_begins_anew(tmp_path, monkeypatch):
     assert file.read_text() == counted()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("change", "fault"),
     [
@@ -191,6 +194,7 @@ def test_a_journal_that_is_torn_or_of_another_run(tmp_path, monkeypatch, capsys,
 LAST = r"(.*) \w+\n$"  # the line of a map of a part that was cut
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("change", "fault"),
     [
@@ -279,6 +283,7 @@ def test_resume_needs_a_file(capsys):
     assert capsys.readouterr().err.count("it needs an output file") == 2
 
 
+@pytest.mark.slow
 def test_a_partial_answer_is_kept_and_gone_on_with(tmp_path):
     file = tmp_path / "maps.json"
     call = ["solve", PAPER, *CLINGO, "--json", "-o", str(file)]
@@ -305,6 +310,7 @@ def test_of_several_instances_the_first_is_gone_on_with(tmp_path):
     assert ordered(file) == ordered(whole)
 
 
+@pytest.mark.slow
 def test_nothing_that_was_found_is_lost(tmp_path, monkeypatch, capsys):
     """Not when a run is cut in the midst of a part, and again while it catches up."""
     file = tmp_path / "maps.json"
@@ -322,6 +328,7 @@ def test_nothing_that_was_found_is_lost(tmp_path, monkeypatch, capsys):
     assert len(json.loads(file.read_text())["maps"]) == 1465
 
 
+@pytest.mark.slow
 def test_beyond_goes_on(tmp_path, monkeypatch):
     monkeypatch.setattr(beyond, "COLUMNS", [(3, 3, None, False), (2, 4, 8, True), (3, 3, 9, True)])
     whole, file = tmp_path / "whole.json", tmp_path / "file.json"

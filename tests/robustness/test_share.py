@@ -134,6 +134,7 @@ def linger(folder, number, watch):
 # Counting
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("block", [*range(4), pytest.param(99, marks=pytest.mark.long)])
 def test_what_clingo_counts_is_what_it_enumerates(block):
     """With each part, and for the best maps; whole, and in the parts of the tree."""
@@ -213,6 +214,7 @@ def crew(request):
     return crews.crew(dask=request.getfixturevalue("cluster"))
 
 
+@pytest.mark.slow
 def test_results_come_in_order(crew):
     with crew:
         for numbers in (range(40), [], [3]):
@@ -221,6 +223,7 @@ def test_results_come_in_order(crew):
         assert list(crew.each(square, range(5), QUIET)) == [0, 1, 4, 9, 16]
 
 
+@pytest.mark.slow
 def test_the_same_figures(crew, monkeypatch):
     monkeypatch.setattr(statistics, "LARGE", 100)
     column = COLUMNS[3]
@@ -231,6 +234,7 @@ def test_the_same_figures(crew, monkeypatch):
     assert {**figures, **column["paper"], **column["expected"]} == figures
 
 
+@pytest.mark.slow
 def test_the_same_maps(cluster, capsys):
     def maps(*more):
         assert main(["solve", PAPER, "--json", "--horizon", "15", *more]) == 0
@@ -250,6 +254,7 @@ def test_a_limit_holds(capsys):
     assert [result["count"] for result in results] == [70, 70]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", ["processes", "cluster"])
 def test_a_lost_worker_costs_its_unit_only(tmp_path, kind):
     with local_cluster() if kind == "cluster" else crews.crew(2) as made:
@@ -260,6 +265,7 @@ def test_a_lost_worker_costs_its_unit_only(tmp_path, kind):
             assert done == list(range(20))
 
 
+@pytest.mark.slow
 def test_what_takes_long_to_send_arrives(crew):
     with crew:
         done = list(crew.each(lift, range(3), Watch(timeout=30)))
@@ -293,6 +299,7 @@ class Bell(Watch):
             raise Stopped("timeout")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", ["processes", "cluster"])
 def test_the_time_limit_ends_what_is_being_done(tmp_path, kind, request):
     address = request.getfixturevalue("cluster") if kind == "cluster" else None
@@ -320,6 +327,7 @@ def children(pid):
     return [int(child) for child in found.read_text().split()] if found.exists() else []
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGKILL])
 def test_no_worker_outlives_the_command(number):
     call = [BIN / "topomap", "count", SNAKE, "--jobs", "2", "--json"]
@@ -360,6 +368,7 @@ def test_no_worker_outlives_a_process_that_is_killed_while_it_works(tmp_path):
     eventually(lambda: not any(running(pid) for pid in started))
 
 
+@pytest.mark.slow
 def test_the_interrupt_key_is_for_no_worker():
     """Ctrl-C in the terminal goes to all processes; each worker has it blocked from its start."""
     with Processes(3) as crew:
@@ -405,6 +414,7 @@ def test_usage(capsys, monkeypatch):
     assert main(["solve", GRID, "--jobs", "1", "--optimal"]) == 0
 
 
+@pytest.mark.slow
 def test_a_client_that_finds_no_cluster_is_closed(monkeypatch):
     monkeypatch.setattr("topomap.solver.cluster.PATIENCE", 1)
     gc.disable()
@@ -424,6 +434,7 @@ def test_without_dask(capsys, monkeypatch):
     assert line.startswith("--dask: distributed is not installed; it comes with the extra dask: ")
 
 
+@pytest.mark.slow
 def test_workers_that_have_another_topomap(cluster, capsys, monkeypatch):
     monkeypatch.setattr(solving, "digest", lambda: "another one")
     assert main(["count", GRID, "--dask", cluster]) == 2

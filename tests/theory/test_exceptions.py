@@ -77,6 +77,7 @@ def test_the_real_map_is_preferred_though_it_has_exceptions():
     assert [*best.values()] == [((1, 0, 7), (8, 2, 4))]
 
 
+@pytest.mark.slow
 def test_the_path_axiom_can_be_taken_away():
     """semantics.md, "Without the path axiom"; a way that comes back to its own place."""
     snake = (ROOT / "instances/grid-3x3-snake.lp").read_text()
@@ -98,6 +99,7 @@ def test_the_path_axiom_can_be_taken_away():
         assert len(maps(loop, f"{form}topomap", "no_path_axiom")) == 2
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("parts", "final", "closed"),
     [
@@ -116,6 +118,7 @@ def test_a_torus(parts, final, closed):
         assert count(seen, query, grown=False)[0] == number
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("axiom", [True, False])
 @pytest.mark.parametrize("seeds", [range(n, n + 15) for n in range(0, 60, 15)])
 def test_all_ways_agree(axiom, seeds):

@@ -178,6 +178,7 @@ def test_the_statement_says_that_it_does_not_know_a_marker():
     )
 
 
+@pytest.mark.slow
 def test_the_path_axiom_can_be_taken_away_step_by_step():
     """The line of online.lp that includes it is taken out. (Of the other entries it is a default:
     test_exceptions.py.)"""

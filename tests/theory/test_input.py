@@ -35,6 +35,7 @@ def agree(facts):
     return bool(shown)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "seeds", [range(1500), pytest.param(range(1500, 30000), marks=pytest.mark.long)]
 )

@@ -143,6 +143,7 @@ def instance(tmp_path):
     return file
 
 
+@pytest.mark.slow
 def test_the_commands_tell_of_it(topomap, instance, tmp_path):
     shown = topomap("show", instance).stdout
     assert "the marker: put down at place 0 after step 0; taken up, put down at place 0" in shown

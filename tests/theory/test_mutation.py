@@ -118,6 +118,7 @@ def test_these_mutants_are_made(tmp_path):
     assert made == MUTANTS
 
 
+@pytest.mark.slow
 def test_all_is_well_if_only_listed_mutants_survive(mutated):
     status, out, _, report = mutated(listing(EQUIVALENT))
     assert status == 0
@@ -127,6 +128,7 @@ def test_all_is_well_if_only_listed_mutants_survive(mutated):
     assert mutated(listing(EQUIVALENT), "-j", "3")[3] == report
 
 
+@pytest.mark.slow
 def test_what_was_tried_is_not_tried_again(mutated, tmp_path, monkeypatch):
     """Unless the encoding, or a query, is another one."""
     known = tmp_path / "known.txt"
@@ -199,6 +201,7 @@ print(*marks.values())
 """
 
 
+@pytest.mark.slow
 def test_what_was_tried_is_known_to_another_process(tmp_path):
     """Whatever the order of its sets."""
     for name in ("counter", *"abcdef"):
@@ -212,6 +215,7 @@ def test_what_was_tried_is_known_to_another_process(tmp_path):
     assert all(printed)
 
 
+@pytest.mark.slow
 def test_a_survivor_that_is_not_listed_is_a_fault(mutated):
     status, out, _, report = mutated("equivalent = []")
     assert status == 1
@@ -235,6 +239,7 @@ def test_a_listed_mutant_that_is_killed_or_is_none_is_a_fault(mutated):
     ]
 
 
+@pytest.mark.slow
 def test_a_mutant_that_only_grounds_to_more_is_larger(tmp_path):
     """If its size is measured."""
     (tmp_path / "some.lp").write_text("few(X) :- n(X), X < 1.\n")
@@ -289,6 +294,7 @@ def test_an_encoding_that_gives_a_wrong_answer_unchanged_is_refused(mutated, mon
     assert err == "mutate: counter: a query has a wrong answer without a change\n"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "suite",
     [

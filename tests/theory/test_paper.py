@@ -20,6 +20,7 @@ def grid(name):
     return read(ROOT / "instances" / f"{name}.lp")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("form", FORMS)
 @pytest.mark.parametrize(
     ("parts", "instance", "options", "line"),
@@ -77,6 +78,7 @@ def test_the_statement_has_the_figures_of_a_column(column, figure):
     assert found == column["expected"][figure]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "column",
     [*COLUMNS[:4], *(pytest.param(column, marks=pytest.mark.long) for column in COLUMNS[4:])],
@@ -108,6 +110,7 @@ def test_the_two_best_maps_of_the_3x3_grid_are_one_graph(form):
     assert len({len(world.edges()) for world in maps}) == 1
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("form", FORMS)
 def test_the_4x4_grid_has_over_minimal_maps(form):
     """Figure 5 c and d: planar, 12 places, 6 paths, 18 links, with and without planarity."""
@@ -123,6 +126,7 @@ def test_the_4x4_grid_has_over_minimal_maps(form):
     assert sizes == {(12, 6, 18, 0)}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("form", FORMS)
 def test_the_unique_perpendicular_map_is_the_grid(tmp_path, form):
     """Figure 5 a."""
@@ -134,6 +138,7 @@ def test_the_unique_perpendicular_map_is_the_grid(tmp_path, form):
     assert only["real"] is True
 
 
+@pytest.mark.slow
 def test_table_prints_and_writes_all_of_it(tmp_path):
     file = tmp_path / "new" / "figure4.json"
     done = run("topomap", "table", "-o", file)
