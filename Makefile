@@ -145,7 +145,7 @@ man: $(SETUP)
 	$(BIN)/python -m topomap.cli.manual build/man
 
 atlas: $(PEERS)
-	$(BIN)/topomap atlas instances/atlas.txt --json --output docs/atlas.json
+	$(BIN)/topomap atlas instances/atlas.txt --seconds 30 --json --output docs/atlas.json
 	$(BIN)/topomap atlas --from docs/atlas.json --output docs/atlas.md
 
 committed: $(SETUP)

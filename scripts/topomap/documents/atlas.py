@@ -104,8 +104,8 @@ predicts something wrongly.
 
 With turns alone, a symmetric world looks the same from several sides. The smallest automaton has
 one state for all dstates that a symmetry exchanges. It predicts everything rightly, but it is not
-the map, as it takes several places for one. (Section V of the paper discusses minimal automata.)
-Such a learner gives one automaton, and does not say how many maps explain its walk.
+the map, as it takes several places for one. Section V of the paper says that the minimal automata
+of earlier methods do not fit environments such as grids; this table measures that. Such a learner gives one automaton, and does not say how many maps explain its walk.
 """
 NO_PEERS = """\
 ## Compared with learning an automaton without reset
