@@ -285,7 +285,7 @@ def test_demands_that_a_document_makes_are_checked(inside, maps):
         ("bound", 8, "violation(bound(8),"),
         ("horizon", 15, "horizon: at ends after step 16"),
         ("cost", [1, 2], "cost: it is"),
-        ("count", 4, "count is 4, there are 3 maps"),
+        ("count", 4, "count is 4, but there are 3 maps"),
     ):
         maps.write_text(json.dumps({**document, key: value}))
         done = inside("check", GRID, maps)

@@ -122,7 +122,7 @@ def demand_pairs(experience: object, where: str) -> None:
     """
     if isinstance(experience, Experience) and experience.assumed:
         known = "same(T,U) and not same(T,U)"
-        raise ValueError(f"{where} takes no other statement for granted than {known}")
+        raise ValueError(f"{where}: only {known} can be taken for granted")
 
 
 def begin(experience: Experience, timeout: float | None, noisy: bool = False) -> Watch:
