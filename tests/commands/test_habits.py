@@ -217,7 +217,7 @@ def valued():
     for parser in parsers(whole_parser()):
         for action in parser._actions:
             takes = not isinstance(action, argparse._SubParsersAction) and action.nargs != 0
-            if takes and not action.required and action.dest != "print_completion":
+            if takes and not action.required:
                 yield parser, action
 
 
@@ -242,16 +242,20 @@ def described(parser, words):
     return parser.description if f"--timeout (default: {words})" in parser.description else ""
 
 
-def test_an_option_with_a_number_says_what_is_done_without_it():
-    numbers = 0
+def test_an_option_with_a_value_says_what_is_done_without_it():
+    """Options with a number, and all those for which the parser has no default."""
+    numbers = without = 0
     for parser, action in valued():
-        if action.type is not None and action.option_strings:
-            numbers += 1
+        none = parser.get_default(action.dest) is None
+        if action.option_strings and (none or action.type is not None):
+            numbers += action.type is not None
+            without += none and action.type is None
             told = action.help + (
                 parser.description if "--timeout" in action.option_strings else ""
             )
             assert "default:" in told, f"{parser.prog} {action.option_strings}"
     assert numbers > 100
+    assert without > 100
 
 
 # Versions, and how to cite

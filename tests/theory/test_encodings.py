@@ -1,12 +1,14 @@
 """What a user of plain clingo may rely on in each file of encodings/."""
 
 import json
+import os
 import re
+import subprocess
 from itertools import combinations
 
 import pytest
 from clingo import ast
-from conftest import ENCODINGS, PARTS, ROOT, answers, forms, run
+from conftest import BIN, ENCODINGS, PARTS, ROOT, answers, forms, run
 from oracles.rule_mutation import named_files, statements
 from topomap.model.facts import read
 from topomap.model.vocabulary import PARTS as DRIVER_PARTS
@@ -27,6 +29,44 @@ def test_these_are_all_the_parts():
     included = {"path_axiom", "paths", "sides"}
     assert names["paper"] == {"topomap", *included, "bound", *STATED_PARTS}
     assert {*DRIVER_PARTS, "bound"} == set(ALL)
+
+
+IN_HEAD = re.compile(r"^%     ((?:clingo|topomap) (?:.*\\\n%)*.*)$", re.M)
+# query.lp's call is of two lines (test_ask.py), and phases/lines.lp needs facts of another call.
+HEADS = [
+    (file, call.replace("\n%", "\n"))
+    for file in STATED
+    if file not in ("query", "phases/lines")
+    for call in IN_HEAD.findall((ENCODINGS / f"{file}.lp").read_text())
+]
+
+
+@pytest.mark.parametrize(("file", "call"), HEADS, ids=[file for file, _ in HEADS])
+def test_the_call_in_a_head_has_an_answer(file, call, tmp_path):
+    """And clingo has no message for it."""
+    maps = tmp_path / "map.lp"
+    (at, *_) = answers([], FACTS)
+    maps.write_text(" ".join(f"at({step},{p},{s})." for step, (p, s) in enumerate(at)))
+    files = {"INSTANCE": "instances/grid-3x3-snake.lp", "MAP": str(maps)}
+    words = re.sub(r"\[.*?\]", "", call)
+    for name, path in files.items():
+        words = re.sub(rf"\b{name}\b", path, words)
+    done = subprocess.run(
+        ["bash", "-c", f"set -o pipefail; {words}"],
+        env={**os.environ, "PATH": f"{BIN}:{os.environ['PATH']}"},
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+    )
+    assert done.returncode in (10, 30), done.stderr
+    assert "Answer: 1" in done.stdout
+    assert "info:" not in done.stderr
+
+
+def test_heads_have_calls():
+    assert {"input", "check", "noise", "explain", "explore", "topomap"} < {
+        file for file, _ in HEADS
+    }
 
 
 def given(parts):

@@ -34,7 +34,7 @@ def check(
 ) -> Judged:
     """Judge maps by two checkers that share no rule with the theory (the paper, sections II, III).
 
-    Whatever else is said about a map besides its dstates is judged, too, as ``topomap check`` does.
+    All other claims about a map besides its dstates are judged, too, as ``topomap check`` does.
 
     Parameters:
         experience: What the agent saw and did.

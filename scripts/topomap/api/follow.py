@@ -127,7 +127,7 @@ class FollowerStatus:
         """What is known as the lines that ``topomap follow`` prints.
 
         Parameters:
-            seconds: The number of seconds that it took, which the first line tells.
+            seconds: The number of seconds that it took, which the first line reports.
 
         Returns:
             The lines.

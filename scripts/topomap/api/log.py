@@ -34,7 +34,7 @@ def read_log(
             ``arrival``.
         facing: Where bearing 0 is in the frame ``arrival``: ``back`` or ``ahead``.
         straight_ways: By how many degrees a way bends at most from one place to the next. In the
-            frame ``north`` this tells the exit by which one arrived, where the log does not.
+            frame ``north`` this determines the exit of arrival, where the log does not.
         straight: By how many degrees two exits of a place may be off from being opposite if they
             are on one path. By default those in opposite slots are on one path, or the limit is
             chosen if no number of slots fits.

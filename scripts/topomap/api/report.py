@@ -56,8 +56,8 @@ def report_under(
 
     ``seen`` holds the explorations, each with its name, and ``seconds`` is the time for all of
     them. At most ``most`` of the best maps of each are drawn; or those in the file ``maps_from``,
-    which is allowed for one exploration only. ``known`` holds the options by which more is known of
-    the explorations than their files tell.
+    which is allowed for one exploration only. ``known`` holds the options that state more about
+    the explorations than their files do.
 
     Raises:
         InputError: The file of maps cannot be read. One line.

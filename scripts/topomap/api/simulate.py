@@ -81,7 +81,7 @@ class Simulation(Reply):
 
     @property
     def random(self) -> int | None:
-        """The median number of steps that random walks take until they have gone every way.
+        """The median number of steps that random walks take to travel along every way.
 
         It is None if most of them are too long to be walked to the end, or if the computation was
         cut short.

@@ -138,7 +138,7 @@ def _parser_of(names: Collection[str]) -> Parser:
         choices=SHELLS,
         metavar="SHELL",
         help=f"print a script by which a shell completes this command ({', '.join(SHELLS)}); it "
-        "needs the extra complete",
+        "needs the extra complete (default: none)",
     )
     group = parser.add_subparsers(metavar="COMMAND", required=True)
     for name in names:

@@ -430,7 +430,7 @@ def add_crew(command: Parser, but: str = "") -> None:
         metavar="ADDRESS",
         help="share the work out among the workers of a running Dask cluster, such as "
         "tcp://127.0.0.1:8786; they need the same version of topomap, and this computer needs the "
-        "extra dask: pip install '.[dask]' in the folder of topomap",
+        "extra dask: pip install '.[dask]' in the folder of topomap (default: none)",
     )
 
 
@@ -463,7 +463,7 @@ def add_scene(command: Parser) -> None:
         metavar="WORLD",
         help="draw the places at their positions in this file of a world, as for topomap generate, "
         "with north up; the links, or landmarks that are names of places in the world, "
-        "tell which place is which",
+        "tell which place is which (default: none)",
     )
     add_known(command)
     add_asked(

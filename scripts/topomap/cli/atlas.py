@@ -42,7 +42,7 @@ def add(group: Any) -> None:
         "--from",
         dest="given",
         metavar="FILE",
-        help="make the page from a file that --json wrote before",
+        help="make the page from a file that --json wrote before (default: none)",
     )
     add(
         "--most",

@@ -27,13 +27,13 @@ def add(group: Any) -> None:
         metavar="MAPS.json",
         help="maps from topomap solve --json or clingo --outf=2; a map needs the key at, "
         "[[T,P,S], ...], and its other keys are verified. The parts, bound, horizon, kind, "
-        "cost and count of the file are verified, too, but not that there are no other "
-        "maps",
+        "cost and count of the file are verified, too. Whether the list is complete is "
+        "not verified",
     )
     made.add_argument(
         "--truth",
         metavar="FILE",
-        help="the real map (from generate --truth), to verify the key real",
+        help="the real map (from generate --truth), to verify the key real (default: none)",
     )
     made.add_argument(
         "--noise",
@@ -46,8 +46,8 @@ def add(group: Any) -> None:
         "--all",
         action="store_true",
         help="report for each map which axioms and defaults it breaks, and name its exceptions to "
-        "consistent boundaries; a map is then wrong only if it breaks what is demanded "
-        "here, or what the file says of it; this includes the path axiom",
+        "consistent boundaries; breaking an axiom, also the path axiom, is then an error only "
+        "if it is demanded here or claimed in the file",
     )
     add_query(made, (*PROPERTIES, *RELAXING), horizon=False)
     add_known(made)

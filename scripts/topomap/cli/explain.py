@@ -27,8 +27,8 @@ def add(group: Any) -> None:
         "statement",
         nargs="?",
         metavar="STATEMENT",
-        help="the statement to explain, such as 'same(3,12)' (see below; default: that there is a "
-        "map)",
+        help="the statement to explain, such as 'same(3,12)' (see below; default: explain "
+        "why there is no map)",
     )
     add_known(made)
     add_query(made, (*DEMANDS, *RELAXING))

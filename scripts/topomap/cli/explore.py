@@ -56,10 +56,15 @@ def add(group: Any) -> None:
     add(
         "--proof",
         metavar="FILE",
-        help="write to FILE the proof that no walk tells maps apart, for --check",
+        help="write to FILE the proof that no walk tells maps apart, for --check "
+        "(default: not written)",
     )
     what = made.add_mutually_exclusive_group()
-    what.add_argument("--check", metavar="FILE", help="check the proofs that --proof wrote to FILE")
+    what.add_argument(
+        "--check",
+        metavar="FILE",
+        help="check the proofs that --proof wrote to FILE (default: none)",
+    )
     what.add_argument(
         "--facts", action="store_true", help="print the maps as facts for encodings/explore.lp"
     )

@@ -49,8 +49,8 @@ what is certain: new(T), the place where the agent is after step T was not visit
     add(
         "--log",
         metavar="FILE",
-        help="with standard input: write each line to FILE before it is answered; if FILE has "
-        "lines already, go on after them",
+        help="with standard input: write each line to FILE before it is answered (default: not "
+        "written); if FILE has lines already, go on after them",
     )
     add("--planar", action="store_true", help=f"{PARTS['planar']}; of one log only (no start)")
     add("--no-path-axiom", action="store_true", help=PARTS["no_path_axiom"])
@@ -65,8 +65,8 @@ what is certain: new(T), the place where the agent is after step T was not visit
         type=number(int, 1),
         default=MOST_COUNTED,
         metavar="N",
-        help="if there are more than N hypotheses, print only that there are "
-        "(default: %(default)s)",
+        help="if there are more than N hypotheses, report only "
+        '"more than N" (default: %(default)s)',
     )
     add_measured(made)
     add_tolerance(made)

@@ -63,12 +63,16 @@ def add(group: Any) -> None:
     )
     add_senses(add)
     add("--name", help="name of the instance (default: made from the arguments)")
-    add("--truth", metavar="FILE", help="also write the true hypothesis, for solve --truth")
+    add(
+        "--truth",
+        metavar="FILE",
+        help="also write the true hypothesis, for solve --truth (default: not written)",
+    )
     add(
         "--world",
         metavar="FILE",
         help="also write the world itself, with positions: as GraphML (.graphml), node-link JSON "
-        "(.json) or tmap2 (.yaml), by the end of the name",
+        "(.json) or tmap2 (.yaml), chosen by the extension of the name (default: not written)",
     )
     add("--json", action="store_true", help="print a summary as JSON")
     add("-o", "--output", metavar="FILE", help="file or folder to write (default: stdout)")

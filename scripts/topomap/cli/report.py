@@ -32,7 +32,7 @@ def add(group: Any) -> None:
         "--maps-from",
         metavar="MAPS.json",
         help="show these maps instead of the best ones, from clingo --outf=2 or topomap solve "
-        "--json (- is standard input)",
+        "--json (- is standard input; default: none)",
     )
     add("-o", "--output", metavar="FILE", help="file to write (default: stdout)")
     add_asked(made, CHOSEN)

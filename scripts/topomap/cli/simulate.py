@@ -62,7 +62,11 @@ def add(group: Any) -> None:
     add_senses(add)
     add_measured(common)
     add("--marker", action="store_true", help="the robot carries a marker, and may put it down")
-    add("--instance", metavar="FILE", help="also write what the robot did and saw, as an instance")
+    add(
+        "--instance",
+        metavar="FILE",
+        help="also write what the robot did and saw, as an instance (default: not written)",
+    )
     add_asked(common, CHOSEN, horizon=False)
     add("--json", action="store_true", help="write JSON")
     add("-o", "--output", metavar="FILE", help="file to write (default: stdout)")

@@ -52,7 +52,7 @@ def add(group: Any) -> None:
     made.add_argument(
         "--truth",
         metavar="FILE",
-        help="mark the maps that are the real one (from generate --truth)",
+        help="mark the maps that are the real one (from generate --truth; default: none)",
     )
     made.add_argument(
         "--by",

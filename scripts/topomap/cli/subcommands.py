@@ -46,7 +46,7 @@ SUBCOMMANDS = {
         " node of the planar tree"
     ),
     "check": (
-        "check maps, whoever made them, by encodings/check.lp and by a second checker (a "
+        "check maps from any source by encodings/check.lp and by a second checker (a "
         "time limit ends the check between two maps)"
     ),
     "table": "print the paper's Figure 4 beside our numbers, and write them as JSON",

@@ -1,1 +1,1 @@
-"""Maps as documents, whoever made them: they are written, read and checked."""
+"""Maps as documents: reading, writing and checking them, from any source."""

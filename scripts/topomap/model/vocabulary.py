@@ -20,7 +20,8 @@ PARTS = {
 }
 OPTIMIZING = {"genus", "exceptions", "minimal"}
 RELAXING = ("no_path_axiom",)  # parts that remove a default
-PRUNING = ("planar", "perpendicular")  # a map that has them had them after each step
+# Properties that, if true of a map, were true after every earlier step.
+PRUNING = ("planar", "perpendicular")
 CHOSEN = (*PRUNING, *RELAXING)  # the parts that draw, explore and report accept
 DEMANDS = tuple(part for part in PARTS if part not in (*OPTIMIZING, *RELAXING))
 PROPERTIES = tuple(part for part in DEMANDS if part != "euler")  # euler is another rule for planar
@@ -67,7 +68,7 @@ agent stood after the step:
   planar, closed, travelled, boundary, perpendicular
                     the map fulfils what the part of this name demands
   circular          some path is circular, which takes --no-path-axiom
-  meets_twice       some two paths share two places or more
+  meets_twice       there are two paths that share two places or more
   not STATEMENT     the statement does not hold"""
 
 

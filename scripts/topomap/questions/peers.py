@@ -136,7 +136,7 @@ class _Enough(Exception):
 
 @contextmanager
 def _drawn(seed: int) -> Iterator[None]:
-    """Have Python's own random numbers, from which AALpy draws, begin with a seed."""
+    """Seed Python's random module, from which AALpy draws."""
     state = random.getstate()
     random.seed(seed)
     try:

@@ -233,14 +233,14 @@ def others(world: TopologicalMap, start: Place, watch: Watch) -> Others:
 def random_walk(
     world: TopologicalMap, start: Place, walks: int = WALKS, watch: Watch | None = None
 ) -> int | None:
-    """The median number of steps until random walks have gone every way."""
+    """The median number of steps until random walks have travelled along every way."""
     lengths = [_length(world, start, seed, watch or Watch()) for seed in range(walks)]
     median = statistics.median_low(lengths)
     return None if median == float("inf") else int(median)
 
 
 def _length(world: TopologicalMap, start: Place, seed: int, watch: Watch) -> float:
-    """The number of steps until a random walk has gone every way; infinite if it is given up."""
+    """How many steps a random walk takes along every way; infinite if it is given up."""
     ways = len(world.links) // 2
     taken: set[Gateway] = set()
     place = start
@@ -357,7 +357,8 @@ def _go_on(
     walks = [predict(one, plan.turns, plan.drop) for one in standings]
     for nth, turn in enumerate(plan.turns):
         if len(robot.route) == most or turn not in robot.world.view(robot.dstate):
-            break  # (in the second case the real map is another one, and is told apart from these)
+            # If the turn is not possible, the real map is another one, distinguished from these.
+            break
         if nth == plan.drop:
             robot.drops.append(len(robot.route))
         robot.step(turn)
@@ -381,7 +382,7 @@ def rivals(
     have at most LARGER percent more places; in order, and at most MOST_MAPS. They have pending
     gateways, so a walk can test them. As long as there are some, the best maps are not believed.
 
-    There is a limit because no walk excludes that each step came to a new place, and such a map
+    There is a limit because the map in which every step came to a new place is never refuted, and
     mostly has no exceptions. The limit is less than twice the number of places: a map that is a
     double cover of the closed one often has no exceptions, either, and no walk tells it from that.
     """

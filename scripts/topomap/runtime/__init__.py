@@ -1,1 +1,1 @@
-"""What every other room uses: errors, files, limits, progress, exit statuses."""
+"""What all other packages use: errors, files, limits, progress, exit statuses."""

@@ -9,7 +9,7 @@ class InputError(Exception):
 
 
 def of_file(path: object, error: OSError) -> InputError:
-    """Make the error that says what the system says about a file."""
+    """Convert an OSError to an InputError that names the file."""
     return InputError(f"{path}: {(error.strerror or str(error)).lower()}")
 
 

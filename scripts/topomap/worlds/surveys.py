@@ -55,7 +55,7 @@ READINGS = {  # the readings of the styles of data that are read
     },
 }
 STYLES = {"topofil": "normal"}  # older names of styles
-NO_LEGS = {"passage", "ignore", "nosurvey"}  # styles whose lines are not legs, or tell no direction
+NO_LEGS = {"passage", "ignore", "nosurvey"}  # styles whose lines are not legs, or give no direction
 USUAL = ("from", "to", "tape", "compass", "clino")
 # Commands that do not matter for which stations are joined, and in which direction.
 IGNORED = {
@@ -545,7 +545,7 @@ class _Reader:
         return length
 
     def _towards(self, told: Mapping[str, _Word], flat: float) -> Point:
-        """Read the compass, and tell how far east and north a level length leads.
+        """Read the compass, and compute how far east and north a level length leads.
 
         If the bearing was measured from both ends, the mean is taken.
         """
