@@ -41,7 +41,7 @@ def pytest_addoption(parser):
 
 
 def pytest_runtest_setup(item):
-    """On a slow machine what is left out is told, and the run ends in time."""
+    """On a slow machine the tests left out are reported, and the run ends in time."""
     minutes = item.config.getoption("within")
     if minutes is not None and time.monotonic() > BEGUN + 60 * minutes:
         pytest.skip(f"not begun within {minutes:g} minutes")
@@ -84,7 +84,7 @@ def part_file(form, part):
 
 
 def beyond(facts):
-    """The files of encodings/paper/ for what is told of which the paper does not know."""
+    """The files of encodings/paper/ for the facts that the paper does not have."""
     files = {
         "marker": "drop",
         "compass": "compass",

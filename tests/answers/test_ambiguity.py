@@ -21,7 +21,7 @@ from topomap.worlds import route
 from topomap.worlds.environment import Environment, environment, grid, lattice, maze, world
 
 MOST, LONG = 1000, 60.0
-FURTHER = 3  # steps of further walks, of which all are tried
+FURTHER = 3  # all further walks of so many steps are tried
 
 
 def walk_of(made, steps, seed=0, start=None):
@@ -174,7 +174,7 @@ def left(walk, kind, turns):
 
 
 def further_walk_is_right(walk, kind):
-    """What is told of the further walk, held against all walks of a few steps."""
+    """What is reported of the further walk, compared with all walks of a few steps."""
     experience, truth = walk.seen(kind == "compass")
     told = ambiguity.settled(walk, kind, counted(walk, kind), LONG, Watch())
     living = {*levels_of(experience, kind)[-1]}
@@ -312,8 +312,8 @@ def still_refutable(real, other, turns):
     return True
 
 
-def test_a_walk_is_told_where_the_shortest_takes_too_long(monkeypatch):
-    """It refutes all maps, one after the other, and no walk has fewer steps than is told."""
+def test_a_walk_is_reported_where_the_shortest_takes_too_long(monkeypatch):
+    """It refutes all maps, one after the other, and no walk has fewer steps than is reported."""
     longer = 0
     for walk in [tour_of(lattice("hexagons", 2, 2)), *random_walks(120, 9, 16)]:
         made = walk.environment.map
@@ -345,7 +345,7 @@ def test_a_walk_is_told_where_the_shortest_takes_too_long(monkeypatch):
     assert longer
 
 
-def test_a_world_that_is_not_planar_is_none_of_the_planar_maps():
+def test_a_world_that_is_not_planar_is_not_a_planar_map():
     """Two places with three ways in one order at both: a torus is needed to draw them."""
     ways = {(0, slot): (1, slot) for slot in (0, 2, 4)}
     made = world(6, ways | {end: out for out, end in ways.items()})
@@ -433,7 +433,7 @@ def test_a_tree_is_all_that_is_left():
         assert (told.kind, told.living) == ("one", 1)
 
 
-def test_a_world_that_breaks_the_path_axiom_is_none_of_its_maps():
+def test_a_world_that_breaks_the_path_axiom_is_not_one_of_its_maps():
     walk = tour_of(grid(3, 3, "torus"))
     told = ambiguity.settled(walk, "all", counted(walk, "all", 1), LONG, Watch())
     assert told.kind == "others"
@@ -503,7 +503,7 @@ def learned(made, compass, seed=0):
 
 @pytest.mark.parametrize(("side", "states"), [(3, 24), (4, 48)])
 def test_a_learner_ends_at_a_quarter_of_a_square_grid(side, states):
-    """As four of its dstates are told apart by no walk; a compass tells them apart."""
+    """Its dstates form groups of four within which no walk distinguishes any; a compass does."""
     for seed in range(3):
         turns, compass = (learned(grid(side, side), how, seed) for how in (False, True))
         assert (turns.dstates, turns.least, turns.states) == (states, states // 4, states // 4)
@@ -547,8 +547,8 @@ class State:
         self.transitions = dict.fromkeys(range(4), self)
 
 
-def test_a_wrong_automaton_is_told():
-    """In a ring of four places all dstates look alike, and one state predicts all of them."""
+def test_a_wrong_automaton_is_reported():
+    """In a ring of four places all dstates look the same, and one state predicts them all."""
     ring = grid(2, 2).map
     looks = dict.fromkeys(ring.gateways(), "a corner")
     right = State("a corner", (0, 1, 3))

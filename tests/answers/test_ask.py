@@ -347,7 +347,7 @@ def test_a_bad_statement_ends_the_command(topomap, tmp_path):
 
 
 def refused(text, experience):
-    """Why a text is no statement, or None."""
+    """Why a text is not a statement, or None."""
     try:
         statements.parse_statement(text, experience, "ask")
     except InputError as fault:

@@ -25,7 +25,7 @@ def agree(seen):
     assert parse(facts, "its facts", tolerance=seen.tolerance) == seen
     for parts in ((), *((part,) for part in PARTS)):
         for form in forms(*parts):
-            # The statement has no left and right of paths whose gateways are told.
+            # The statement has no left and right of paths whose gateways are given.
             if (form, bool(seen.straight), *parts) != ("paper", True, "boundary"):
                 found = answers(parts, facts, *constants, encoding=form)
                 assert found == truth.having(*parts), (form, parts, facts)
@@ -117,7 +117,7 @@ def test_a_bearing_that_is_one_off(tolerance, maps):
 
 
 @pytest.mark.slow
-def test_opposite_gateways_are_on_one_path_unless_pairs_are_told():
+def test_opposite_gateways_are_on_one_path_unless_pairs_are_given():
     """Telling of each visit that opposite gateways are on one path changes nothing."""
     seen = topomap.read(ROOT / "instances/grid-3x3-snake.lp")
     pairs = [[*seen.pairs(visit)] for visit in range(seen.steps + 1)]
@@ -168,7 +168,7 @@ def test_step_by_step(block):
 
 
 def test_lines_of_a_follower():
-    """Pairs of gateways are told in facts or in JSON, from the first view on or not at all."""
+    """Pairs of gateways are given in facts or in JSON, from the first view on or not at all."""
     follower = topomap.follow(6, tolerance=1)
     follower.step([0, 2], straight=[(0, 2)])
     status = follower.step([0, 3], 2, straight=[(0, 3)])

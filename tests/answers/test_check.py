@@ -88,8 +88,8 @@ def expected(world, at, axiom):
 
 
 def without_the_axiom(cases, name, most):
-    """On maps of which some break the path axiom: the checkers agree with brute force on each part,
-    with the axiom and without it, and on the exceptions."""
+    """On maps, some of which break the path axiom: the checkers agree with brute force on each
+    part, with the axiom and without it, and on the exceptions."""
     judged = 0
     for seed in range(cases):
         draw = random.Random(f"{name} {seed}")
@@ -349,7 +349,7 @@ def test_no_maps_are_sound(inside, maps):
     assert (done.returncode, done.stdout) == (0, "0 maps, none unsound\n")
 
 
-def test_maps_of_part_of_the_steps_are_told(inside, maps):
+def test_maps_of_part_of_the_steps_are_reported(inside, maps):
     document = json.loads(maps.read_text())
     at = [{"at": one["at"][:10]} for one in document["maps"][:1]] + document["maps"][1:]
     maps.write_text(json.dumps(at))
@@ -412,7 +412,7 @@ def test_the_real_map_is_verified(inside, tmp_path):
         json.dumps([{"at": [[0, 0, 0]] * 1000}]),
     ],
 )
-def test_what_is_no_document_of_maps_is_refused(inside, tmp_path, text):
+def test_what_is_not_a_document_of_maps_is_refused(inside, tmp_path, text):
     file = tmp_path / "maps.json"
     file.write_text(text)
     done = inside("check", GRID, file)

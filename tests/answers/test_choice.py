@@ -212,7 +212,7 @@ def test_a_bound_of_closed_maps_is_not_said_where_there_may_be_none(monkeypatch)
 
 
 def test_a_long_log_of_which_one_hypothesis_lives_is_searched():
-    """No two visits look alike, and no branch of the tree has ended when its size is first told."""
+    """No two visits look alike; no branch of the tree has ended when its size is first given."""
     log = instance(grid(30, 30), "snake", steps=700, signs=1).experience
     trial = Trial(log, Query(), Watch())
     assert (trial.by, trial.whole, len(trial.maps)) == ("search", True, 1)

@@ -137,7 +137,7 @@ def goal(answer, statement):
 
 
 def demand_words(experience, answer):
-    """The paths and cycles that are told are ones of the maps in which they are, and so on."""
+    """The paths and cycles in the answer exist in the maps of which it speaks, and so on."""
     for reason in answer["reasons"]:
         at = tuple((place, slot) for _, place, slot in reason["without"])
         kind, words = reason["reason"].partition("(")[0], reason["words"]
@@ -154,7 +154,7 @@ def demand_words(experience, answer):
             assert places[0] == places[-1]
             assert len(places) > 1
             half = experience.slots // 2
-            # Whoever walks straight on can go by these places, and meets the first one again.
+            # An agent that walks straight on can pass these places, and meets the first one again.
             # (Where a gateway has two links, from one of them to the other, too.)
             forks = any(name.startswith(("schema", "unification")) for name in reason["also"])
             walks = [(a, b) for a, b in both if (a[0], b[0]) == tuple(places[:2])]
@@ -343,7 +343,7 @@ LATER = [pytest.param(line, marks=pytest.mark.long) for line in LINES if line no
 @pytest.mark.slow
 @pytest.mark.parametrize("line", [*SOONER, *LATER])
 def test_words_of_the_grids(tmp_path, line):
-    """The kinds of reasons that are there, told from a map; stock clingo says the same of all of
+    """The kinds of reasons that are there, stated from a map; stock clingo says the same of all of
     them, and of each left out."""
     name, statement, options, verdict, kinds = map(str.strip, line.split("|"))
     size, steps = name.split()
@@ -448,7 +448,7 @@ def test_a_walk_of_thirteen_steps_without_a_map(tmp_path):
     assert not any(map(enough, fewer))
 
 
-def test_what_is_told_of_one_step_is_gathered():
+def test_what_is_known_of_one_step_is_gathered():
     ring = replace(EXPERIENCES["round"], compass=(), lengths=())
     steps = ring.steps
     ring = replace(ring, compass=[0] * (steps + 1), lengths=[7] * steps)
@@ -504,7 +504,7 @@ def test_each_reason_has_words():
     assert named - {*RULE_NAMES} == NOT_WAIVED
 
 
-def test_what_is_not_grounded_where_rules_are_waived_is_no_reason():
+def test_what_is_not_grounded_where_rules_are_waived_is_not_a_reason():
     """Those names say the same as others, by fewer ground rules."""
     control = clingo.Control(["--opt-mode=ignore"])
     for file in ("topomap", "explain", "perpendicular", "planar", "closed"):

@@ -189,7 +189,7 @@ def test_why_no_walk_tells_them(cases, marker):
             if pair.why == "bisimilar" and not marker:
                 world = one.world
                 assert world.indistinguishable(one.dstate, other.world, other.dstate)
-        # Every pair that is not told is there, or follows from pairs that are.
+        # Every pair that no walk distinguishes is listed, or follows from pairs that are.
         there = {(pair.one, pair.other) for pair in made.untold}
         for i, j in combinations(range(len(among)), 2):
             if tells(predictions[i], predictions[j]):
@@ -336,7 +336,7 @@ def test_a_marker_that_is_out_is_seen():
 
 @pytest.mark.slow
 @pytest.mark.parametrize("most", [1, 2, 5])
-def test_too_many_classes_are_told(monkeypatch, most):
+def test_too_many_classes_are_reported(monkeypatch, most):
     monkeypatch.setattr(explore, "MOST_CLASSES", most)
     for number in range(40):
         slots, among = asked(random.Random(f"many {number}"), number, 5)
@@ -347,7 +347,7 @@ def test_too_many_classes_are_told(monkeypatch, most):
 
 
 @pytest.mark.slow
-def test_too_many_states_are_told(monkeypatch):
+def test_too_many_states_are_reported(monkeypatch):
     experience = read(ROOT / "instances/manhattan-tour20.lp").cut(14)
     among = [standing(experience, at) for at in maps(experience)]
     whole = plan(4, among, quiet())
@@ -377,7 +377,7 @@ def test_a_plan_is_made_soon():
     assert time.monotonic() - started < 6
 
 
-def test_a_long_street_is_no_trouble():
+def test_a_long_street_is_not_a_problem():
     street = grid(1, 3000).map
     started = time.monotonic()
     assert plan(4, [Standing(street, ((0, 0), EAST))], quiet()).kind == "settled"

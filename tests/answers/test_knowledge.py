@@ -188,7 +188,7 @@ def test_why(kind):
             wanted = "open" if len(same) == 2 else "certain" if True in same else "impossible"
         assert (found.verdict, found.complete) == (wanted, True), seen.facts()
         for reason in found.explanation.reasons:
-            TRIED[f"reasons told: {reason.kind}"] += 1
+            TRIED[f"reasons given: {reason.kind}"] += 1
 
 
 @pytest.mark.slow
@@ -264,7 +264,7 @@ def test_what_is_assumed_is_a_reason():
         assert words is None or [one for one in told.lines() if words in one], [*told.lines()]
 
 
-def test_a_compass_that_is_told_of_some_visits_is_left_out_of_plans():
+def test_a_compass_that_is_known_of_some_visits_is_left_out_of_plans():
     """It is said, in the one line that begins with it."""
     seen = instance(grid(3, 3), "ESWN", senses=Senses(compass=True)).experience
     some = replace(seen, compass=(*seen.compass[:-1], None))

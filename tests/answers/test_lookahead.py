@@ -62,7 +62,7 @@ def test_of_a_beginning_alone_nothing_more_is_left_out(seed, few_pairs):
 
 
 def test_long_walks_have_the_maps_of_the_plain_tree(few_pairs):
-    """Walks of 300 steps through small worlds, of which most are over known links."""
+    """Walks of 300 steps through small worlds; most of these steps are over known links."""
     maps = 0
     for seed, signs, compass in ((0, 0, False), (1, 0, True), (2, 0.3, False), (3, 0.3, True)):
         for rows, parts in ((2, []), (2, ["closed"]), (3, ["planar"]), (3, ["perpendicular"])):
@@ -200,7 +200,7 @@ def futures(name):
 
 
 def test_visits_that_are_of_one_place_in_some_map_are_a_pair():
-    """And of pairs that look alike, many are ruled out, each of which is in no map."""
+    """Many pairs of visits that look alike are ruled out; each of these is in no map."""
     ruled_out = 0
     for experience, node, future in futures("pairs"):
         alike = {
@@ -288,7 +288,7 @@ def test_many_slots_take_little_memory():
     assert found == [at for at, _ in plain(far, Query(frozenset(["closed"])))[1]]
 
 
-def test_a_search_ends_when_it_is_told_to():
+def test_a_search_ends_when_it_is_stopped():
     def heed(search):
         if search.nodes >= 1_000:
             raise TooLarge
@@ -300,7 +300,7 @@ def test_a_search_ends_when_it_is_told_to():
 
 
 def test_a_walk_of_240_steps_gives_the_true_map_soon():
-    """The map of the 4x4 grid, of which none better exists, in a few thousand nodes."""
+    """The map of the 4x4 grid, which is optimal, in a few thousand nodes."""
     walk = instance(grid(4, 4), "walk", steps=240, seed=1)
     parts = frozenset(["closed", "boundary", "planar", "perpendicular", "minimal"])
     search = Descent(walk.experience, Query(parts))

@@ -1,4 +1,4 @@
-"""Misreadings: all that is said of wrong views is held against a brute force over all ways to
+"""Misreadings: all that is said of wrong views is compared with a brute force over all ways to
 correct so many of them, each judged by the independent search."""
 
 import json

@@ -271,8 +271,8 @@ def said(known, experience):
 @pytest.mark.slow
 @pytest.mark.parametrize("cases", [25, pytest.param(600, marks=pytest.mark.long)])
 def test_clingo_and_the_search_say_the_same(cases, monkeypatch):
-    """Whatever is known besides views, with steps that are taken back, and where the one takes over
-    from the other in the midst of it."""
+    """With everything known besides views, with steps that are taken back, and where the one takes
+    over from the other in the middle."""
     monkeypatch.setattr(online, "FEWER", 1)
     for number in range(cases):
         draw = random.Random(f"both ways {number}")
@@ -300,7 +300,7 @@ def test_clingo_and_the_search_say_the_same(cases, monkeypatch):
             assert all(other == one for other in others), experience.facts()
             assert all(way.experience == seen for way in ways)
             TRIED["statuses of a follower by clingo and by search"] += 1
-            if step % 3 == 0:  # what is new since then, of which sets are not made
+            if step % 3 == 0:  # what is new since then; sets are not made of it
                 known = [other[0].certain for other in others]
                 fresh = one[0].certain.since(before)
                 assert all(other.since(before) == fresh for other in known)
@@ -363,7 +363,7 @@ def test_only_some_hypotheses_are_kept_where_clingos_program_is_too_large(monkey
 
 
 def test_boundaries_are_those_of_the_definition():
-    """And the steps that are told make them so by themselves."""
+    """And the steps that are named suffice for that."""
     broken = 0
     for number in range(60):
         draw = random.Random(f"boundaries {number}")

@@ -45,8 +45,8 @@ def always(monkeypatch):
 
 
 def crossing_streets(draw: random.Random) -> TopologicalMap:
-    """Streets, some of which cross, no three each other: where two do there is a place, in
-    the midst of a street or at its end. As a rule it has no plane drawing."""
+    """Streets, some of which cross, but no three pairwise: where two cross there is a place, in
+    the middle of a street or at its end. As a rule it has no plane drawing."""
     while True:
         number = draw.randint(2, 6)
         crossings: set[tuple[int, int]] = set()
@@ -196,7 +196,7 @@ def test_streets():
         agree(experience, None, MORE[:2], searched=False)
 
 
-def test_what_is_asked_up_to_a_step_is_not_told_by_later_ones():
+def test_what_is_asked_up_to_a_step_does_not_depend_on_later_ones():
     route = ["NESW".index(way) for way in "ESSENNESSWWWNEEENWWWS" + "NEEESWSENNWWWSSE"]
     experience = observe(grid(3, 4).map, ((0, 0), 1), route)[0]
     assert len(agree(experience, 21, MORE[:1], searched=False)) == 8
@@ -546,7 +546,7 @@ def test_the_snake_of_8x8(topomap, tmp_path):
 
 @pytest.mark.slow
 @pytest.mark.parametrize("late", [False, True])
-def test_phases_end_when_they_are_told(monkeypatch, late):
+def test_phases_end_when_they_are_stopped(monkeypatch, late):
     """Before a call of clingo or in its midst, at whichever call: the next is not begun."""
     small = instance(grid(4, 4), "snake").experience
     query, heed, asked, end = Query(frozenset(SQUARE)).having("planar"), Program._heed, [], 0

@@ -151,7 +151,7 @@ def test_best_first_says_no_where_no_map_is_closed(topomap):
 
 
 def test_best_first_goes_by_the_policy():
-    """A node is no worse than any other that was open when it was taken."""
+    """A node is at least as good as any other that was open when it was taken."""
     experience = read(ROOT / GRID)
     node = traversal.root(experience, Query())
     opened, taken = {node.dstates: node.cost}, []

@@ -45,7 +45,7 @@ def worlds(number, seed):
 
 
 def ended_as_it_says(made, start, outcome):
-    """What the outcome says, held against the search and the world."""
+    """What the outcome says, compared with the search and the world."""
     experience, truth = observe(made, start, routed(made, start, outcome.experience))
     assert experience == outcome.experience
     found = solving.best(experience, ALL, Watch(), traversal.hypotheses)
@@ -102,7 +102,7 @@ def test_robots_in_random_worlds_end_as_they_say(number, seed):
 
 
 def test_a_robot_knows_nothing_but_what_it_saw():
-    """In two worlds that cannot be told apart it goes the same ways."""
+    """In two worlds that no walk distinguishes it goes the same ways."""
     experience = read(ROOT / "instances/grid-3x3-snake.lp")
     best = solving.best(experience, ALL, Watch())
     first, second = (experience.map_of(one.at) for one in best if one.proved)
@@ -180,7 +180,7 @@ def test_a_crescent_is_found(size):
     assert f"the truth has {many} exceptions to consistent boundaries" in outcome.lines("crescent")
 
 
-def test_a_small_closed_map_with_exceptions_is_not_believed():
+def test_a_small_closed_map_with_exceptions_is_not_accepted():
     """The robot in a row of hexagons could stop earlier, at a map with exceptions."""
     made = lattice("hexagons", 1, 2)
     _, start = robot.start_of(made)

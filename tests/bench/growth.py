@@ -9,7 +9,12 @@ from typing import Any
 
 SHOWN = ("rules", "conflicts", "seconds")
 OF_SEARCH = {"conflicts": "nodes"}  # what stands for a figure in the curves of the search
-LEAST = {"rules": 1, "conflicts": 10, "nodes": 10, "seconds": 0.05}  # below it is no growth
+LEAST = {
+    "rules": 1,
+    "conflicts": 10,
+    "nodes": 10,
+    "seconds": 0.05,
+}  # less is not growth
 STYLES: dict[str, dict[str, Any]] = {
     "baseline": {"color": "#888888", "marker": "s", "markersize": 7, "markerfacecolor": "none"},
     "work": {"color": "#0055aa", "marker": "o", "markersize": 4},

@@ -39,7 +39,7 @@ Case = tuple[Experience, tuple[str, ...], int | None]
 
 
 def cases() -> Iterator[Case]:
-    """Walks of which the search finds no map."""
+    """Walks for which the search finds no map."""
     for number in range(100 * MANY):
         case = candidate(random.Random(f"reasons {number}"), STEPS)
         if not has_map(*case):
@@ -64,7 +64,7 @@ def seconds_of(words: list[str]) -> tuple[float, str]:
 
 
 def row(case: Case, file: Path) -> dict[str, Any]:
-    """What is told of a case, how long it took, and whether it is right."""
+    """What is reported of a case, how long it took, and whether it is right."""
     seen, parts, bound = case
     file.write_text(seen.facts())
     options = [f"--{part}" for part in parts] + [f"--bound={bound}"] * (bound is not None)

@@ -60,7 +60,7 @@ class Control(clingo.Control):
 
 
 def told() -> dict[str, int]:
-    """Rules, atoms, choices and conflicts of all clingos, unless one has not told them."""
+    """Rules, atoms, choices and conflicts of all clingos; none if one did not report them."""
     programs.forget()
     gc.collect()
     return dict(Control.figures) if Control.made == Control.told else {}

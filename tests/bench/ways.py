@@ -4,7 +4,7 @@ It also measures how long answers take to be written, and how long a simulated r
 
     PYTHONPATH=tests python -m bench.ways [--networks FOLDER] [--cases FOLDER] [--only PATTERN]
 
-Writes docs/solve.md, unless ``--only`` is given. All times are those of whole processes, but for
+Writes docs/solve.md, unless ``--only`` is given. All times are those of whole processes, except for
 ``json.dumps``. Exit status: 0 if each goal is met; 1 if one is missed, or if the two ways find
 different numbers of maps.
 """

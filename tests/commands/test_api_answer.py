@@ -39,7 +39,7 @@ def some(seen):
 
 
 class Finder:
-    """Finds what it is told to, in place of the solver; an error among that is raised."""
+    """Stands in for the solver: it finds given things, and raises an error that is among them."""
 
     def __init__(self):
         self.found = []
@@ -250,7 +250,7 @@ def switches():
 
 @pytest.fixture
 def clock(monkeypatch):
-    """A clock that goes on only when it is told."""
+    """A clock that advances only when a test sets it."""
 
     class Clock:
         now = 1000.0

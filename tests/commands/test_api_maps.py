@@ -98,7 +98,7 @@ def test_a_map_reads_as_solve_prints_it(topomap):
     assert found.partition(": ")[2] == map_line(SEEN, Found(closed().at, "consistent"))
 
 
-def test_what_was_misread_is_told():
+def test_what_was_misread_is_reported():
     """The agent goes from one end of a way to the other, and back."""
     end = frozenset([0])
     seen = Experience(2, (end, end, end), (0, 0), (frozenset(),) * 3)
@@ -218,7 +218,7 @@ def test_what_cannot_be_drawn_says_so_in_a_line(tmp_path, monkeypatch):
     assert not list(tmp_path.iterdir())
 
 
-def test_no_memory_for_a_drawing_is_no_endless_wait(tmp_path, monkeypatch):
+def test_no_memory_for_a_drawing_is_not_an_endless_wait(tmp_path, monkeypatch):
     monkeypatch.setattr(ready, "MEMORY", 1 << 60)
     with pytest.raises(MemoryError):
         closed().draw(tmp_path / "map.svg")

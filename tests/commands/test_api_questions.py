@@ -277,7 +277,7 @@ def test_what_explore_refuses(seen):
 
 
 def steps_of(experience):
-    """What a follower is told of an experience: the views, turns and landmarks."""
+    """What a follower is given of an experience: the views, turns and landmarks."""
     turns = [None, *experience.turns]
     return zip(map(sorted, experience.views), turns, map(sorted, experience.landmarks), strict=True)
 

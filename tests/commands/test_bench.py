@@ -246,7 +246,7 @@ def test_rows_are_measured_again_into_what_there_is(bench):
 
 
 @pytest.mark.slow
-def test_what_more_processes_gain_is_told_and_that_they_count_the_same(monkeypatch):
+def test_what_more_processes_gain_is_reported_and_that_they_count_the_same(monkeypatch):
     monkeypatch.setattr(jobs, "TASKS", {"a task": ((3, 3), Query(frozenset(["planar"])))})
     (found,) = jobs.speedup(2)
     assert found["nodes"] == 240
@@ -275,7 +275,7 @@ def test_the_rows_are_those_of_the_table():
 
 
 @pytest.mark.slow
-def test_the_rules_are_told_where_maps_are_listed(bench):
+def test_the_rules_are_reported_where_maps_are_listed(bench):
     _, document, _ = bench(
         "--quick", "--only", "^3x3 snake, closed, perpendicular", "--repeat", "1"
     )

@@ -396,7 +396,7 @@ def test_a_command_starts_without_what_few_need():
     assert not modules & (slow | {"multiprocessing", "defusedxml"})
 
 
-def test_a_closed_pipe_is_no_error():
+def test_a_closed_pipe_is_not_an_error():
     call = ["bash", "-c", '"$0" "$@" | head -1', BIN / "topomap", "solve", GRID]
     done = subprocess.run(call, capture_output=True, text=True, cwd=ROOT)
     assert done.stdout.startswith("map 1")

@@ -14,7 +14,7 @@ from topomap.cli import parse
 from website import commands
 
 SECONDS = 10  # then an example is interrupted: some wait for more lines, some take minutes
-ENDS = {0, 1, 3, 130, 124}  # done; no; partial; interrupted, as told by topomap or by timeout
+ENDS = {0, 1, 3, 130, 124}  # done; no; partial; interrupted, as reported by topomap or by timeout
 OF_CLINGO = {10, 30}  # clingo found models, or found them all
 TOOLS = {"neato", "less", "clingraph"}  # programs that need not be there
 WALK = "slots(4).\nview(0,0).\nturn(1,0). view(1,0). view(1,2).\nturn(2,2). view(2,0).\n"
@@ -78,7 +78,7 @@ def test_the_examples_do_what_they_say(folder, name):
             env={**os.environ, "PATH": path},
         )
         ends = ENDS | OF_CLINGO if "clingo" in call else ENDS
-        if "veiw" in call:  # it shows how a fault is told
+        if "veiw" in call:  # it shows how a fault is reported
             ends = {2}
             assert "did you mean view/2?" in done.stdout
         assert done.returncode in ends, (call, done.returncode, done.stderr)

@@ -88,7 +88,7 @@ def agrees(tmp_path, seen, scene):
     (verdict,) = verdicts(seen, [maps.document("made", document)], [], None)
     original = json.loads(json.dumps({"maps": [map_json(scene.world, scene.at)]}))
     (other,) = verdicts(seen, [maps.document("made", original)], [], None)
-    # Where maps are said to be the best ones, their exceptions are told, too.
+    # Where maps are said to be the best ones, their exceptions are reported, too.
     assert replace(verdict, exceptions=None) == other
     assert not verdict.short
     return verdict.sound

@@ -41,7 +41,7 @@ def in_json(experience):
 
 
 def answers(text):
-    """What is told, but for the seconds."""
+    """The answers without the seconds."""
     told = [json.loads(line) for line in text.splitlines()]
     return [{key: value for key, value in one.items() if key != "seconds"} for one in told]
 
@@ -260,7 +260,7 @@ BAD = [
 
 
 def test_a_new_log_is_refused_where_maps_are_to_be_planar(topomap):
-    """In one line that names the line of the input, and whatever was told before is answered."""
+    """In one line that names the line of the input; all that was sent before is answered."""
     text = "\n".join([*LINES[:3], "start(2). view(2,0)."])
     done = topomap("follow", "--planar", input=text)
     assert done.returncode == 2
@@ -277,8 +277,8 @@ def test_a_new_log_is_refused_where_maps_are_to_be_planar(topomap):
     assert refused.stderr == "branching: equation (1) is of one log, without start(T)\n"
 
 
-def test_a_key_that_is_null_is_not_told():
-    """Whoever writes a line for each step need not leave keys out, on the first line, either."""
+def test_a_key_that_is_null_counts_as_missing():
+    """A program that writes a line for each step may keep all keys, also on the first line."""
     first = {"slots": 4, "view": [0], "compass": 1}
     second = {"turn": 0, "view": [0, 1], "shift": [3, 0]}
     keys = ("landmarks", "marker", "drop", "pick", "same", "apart", "length", "start", "look")

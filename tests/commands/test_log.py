@@ -70,7 +70,7 @@ def test_a_log_by_hand_in_both_forms(file):
 
 
 def test_all_columns_with_a_bom_and_quotes():
-    """Columns in another order, parted by semicolons, lines that end as on Windows."""
+    """Columns in another order, separated by semicolons, lines that end as on Windows."""
     log = topomap.read_log(FILES / "streets.csv")
     assert log.experience.facts() == STREETS
     assert (log.frame, log.north, log.unit) == ("north", 0, 0.01)
@@ -226,7 +226,7 @@ def replace_field(found, compass):
 
 @pytest.mark.parametrize("kind", ["grid", "hexagons"])
 def test_generated_walks_with_all_that_is_measured(read, kind):
-    """Ways are straight in these worlds, so the exits of arrival need not be told."""
+    """Ways are straight in these worlds, so the exits of arrival need not be given."""
     given = {"compass": True, "odometry": 0, "lengths": True, "signs": 0.5, "seed": 4}
     made = topomap.generate(kind, 2, 3, route="walk", steps=30, **given)
     seen = made.experience
@@ -346,7 +346,7 @@ def test_the_truth_is_among_the_maps_of_a_rough_log(read):
     assert found > 10
 
 
-def test_what_is_chosen_is_told(read):
+def test_what_is_chosen_is_reported(read):
     """What was measured, what is a guess, and what is on one path."""
     bend = "exits,taken\n0 33 171,0\n0,0\n0 32 173,32\n0,"
     log = read(bend)
@@ -413,8 +413,8 @@ def test_looks_and_starts(read):
 
 
 def test_displacements_and_decimal_commas(read):
-    """A displacement may stand in one column; and where columns are not parted by commas, numbers
-    may have them."""
+    """A displacement may stand in one column; and where columns are not separated by commas,
+    numbers may have them."""
     rows = '{"exits": ["N"], "taken": "N", "displacement": [0.5, 12]}\n{"exits": ["S"]}\n'
     table = "exits;taken;east;north\nN;N;0,5;12\nS;;;\n"
     plain = "exits,taken,east,north\nN,N,0.5,12\nS,,,\n"

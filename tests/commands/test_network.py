@@ -69,7 +69,7 @@ def test_a_two_way_pair_is_one_way_and_loops_go(tmp_path):
     assert load(undirected, None, 4, 0)[0].map == made.map
 
 
-def test_without_a_crs_the_guess_is_told(tmp_path):
+def test_without_a_crs_the_guess_is_reported(tmp_path):
     file = write(tmp_path, square(crs=""))
     graph = nx.read_graphml(file)
     del graph.graph["crs"]
@@ -120,7 +120,7 @@ def test_headers_hold_no_facts(tmp_path):
     assert "letters, digits" in done.stderr
 
 
-def test_parallel_ways_and_parts_are_told(tmp_path):
+def test_parallel_ways_and_parts_are_reported(tmp_path):
     graph = square()
     join(graph, "a", "b")
     with pytest.raises(
@@ -354,7 +354,7 @@ def test_two_short_ways_between_two_places_part(tmp_path):
     "fault",
     ["None", "LINESTRING EMPTY", "POINT (0 0)", "[5]", "[[0,0],[1]]", "LINESTRING (0 0, x y)"],
 )
-def test_a_bad_course_is_named_whatever_the_graph(tmp_path, kind, fault):
+def test_a_bad_course_is_named_in_any_graph(tmp_path, kind, fault):
     graph = square(kind)
     join(graph, "a", "c", geometry=fault)
     with pytest.raises(InputError, match="the way from place a to c: its geometry"):
@@ -390,7 +390,7 @@ def test_a_course_may_be_written_from_either_end_of_both_edges(tmp_path):
         ('GEOGCRS["WGS 84",ID["EPSG",4326]]', 0.001, True),
     ],
 )
-def test_what_the_coordinates_are_is_told_by_the_crs(tmp_path, crs, scale, degrees):
+def test_the_crs_says_what_the_coordinates_are(tmp_path, crs, scale, degrees):
     loaded = load(write(tmp_path, square(scale=scale, crs=crs)))
     wanted = "longitude and latitude" if degrees else "plane"
     assert f"coordinates: {wanted}" in loaded.plan.notes
@@ -406,7 +406,7 @@ def test_coordinates_that_cannot_be_what_they_are_taken_for(tmp_path):
 
 @pytest.mark.slow
 def test_ten_thousand_places_come_to_an_end(tmp_path):
-    """A street, of which each dstate is told from the others by how far it is to the ends, and a
+    """A street, where each dstate differs from the others in how far it is to the ends, and a
     star: what is asked of each place must not ask all others, which would take hours."""
     street, star = nx.Graph(crs="plane"), nx.Graph(crs="plane")
     for number in range(10_000):

@@ -86,7 +86,7 @@ def test_the_command_reads_a_cave(tmp_path):
 
 
 def test_directions_are_those_along_the_way(tmp_path):
-    """10 metres along, unless it is told; a loop has at most a third of it."""
+    """10 metres along, unless another length is given; a loop has at most a third of it."""
     text = "a b 4 0 0\nb c 20 90 0\nc d 1 0 0\nd e 8 0 0\n"
     file = tmp_path / "bent.svx"
     (near,) = plan(file, text, along=2).ways
@@ -413,7 +413,7 @@ def test_a_grid_of_corridors(tmp_path, width, turn, kind, seed):
             assert abs((bearing - turn + 45) % 90 - 45) < 8
     told = dict(line.partition(": ")[2].rsplit(": ", 1) for line in warnings)
     assert told["corners taken as places"] == "4"
-    # The noise that the test put in, but for what is at the walls, is what was changed.
+    # The noise that the test put in, except at the walls, is what was changed.
     changed = int(told["pixels changed, as noise or as small spots"])
     assert changed == pytest.approx(0.01 * free.size, rel=0.35)
 
@@ -429,14 +429,14 @@ def bend(width, radius):
 
 @pytest.mark.parametrize("width", [5, 9, 15])
 @pytest.mark.parametrize(("radius", "places"), [(0.5, 3), (1, 3), (3, 2), (6, 2)])
-def test_a_smooth_bend_is_no_corner(width, radius, places):
+def test_a_smooth_bend_is_not_a_corner(width, radius, places):
     net = skeletons.net_of(bend(width, radius * width))
     assert (len(net.where), len(net.lines)) == (places, places - 1)
 
 
 def test_halls_rings_and_alcoves():
     """A hall is one place; a ring has its corners as places, or is left out and counted; an
-    alcove that is less deep than the corridor is half wide is no way."""
+    alcove that is less deep than half the width of the corridor is not a way."""
     row, column = np.mgrid[:200, :200] - 100
     hall = (abs(row) <= 40) & (abs(column) <= 40)
     crossing = hall | (abs(row) <= 4) | (abs(column) <= 4)
@@ -557,8 +557,8 @@ def test_maps_refused(tmp_path, told, fault):
     assert "\n" not in str(error.value)
 
 
-def test_what_map_saver_writes_for_unknown_space_is_told(tmp_path):
-    """By its usual free_thresh, 0.25, it counts as free; nothing is told where that is not so."""
+def test_what_map_saver_writes_for_unknown_space_is_reported(tmp_path):
+    """By its usual free_thresh, 0.25, it counts as free; otherwise there is no message."""
     free, _ = corridors(9, noise=0)
     steps = [(row, column) for row in range(-3, 4) for column in range(-3, 4)]
     walls = np.any([np.roll(free, step, (0, 1)) for step in steps], axis=0)

@@ -92,7 +92,7 @@ FAULTS = {  # and all that is said of them
         "4: step 0: the marker is seen, but lies nowhere",
         "3: step 1: the marker is taken up, but lies nowhere",
     ],
-    # What may be missing only because it stands in a statement that was not read is not told.
+    # What may be missing only because it stands in a statement that was not read is not reported.
     "slots(4).\nveiw(0,0).\nturn(1,0) view(1,0).\nview(2).\nview(1,9). a :- b.\nturn(2,x).": [
         "2: veiw(0,0): veiw/2 is not known; did you mean view/2?",
         "3: 'turn(1,0) view(1,0)' is not a ground fact (is a full stop missing?)",
@@ -134,7 +134,7 @@ def test_what_is_too_large_depends_on_the_percent(judged):
     )
 
 
-def test_a_shift_that_is_not_used_is_told(judged):
+def test_a_shift_that_is_not_used_is_reported(judged):
     text = "slots(4). view(0,0).\nturn(1,0). view(1,0).\nstart(2). view(2,0). shift(2,1,1)."
     _, (_, warning) = judged(text)
     assert warning.startswith("3: step 2: warning: there is a shift, which is not used")
@@ -142,7 +142,7 @@ def test_a_shift_that_is_not_used_is_told(judged):
 
 
 @pytest.mark.parametrize("text", FAULTS)
-def test_all_faults_are_told(judged, text):
+def test_all_faults_are_reported(judged, text):
     status, lines = judged(text)
     if FAULTS[text]:
         assert (status, sorted(lines)) == (2, sorted(FAULTS[text]))
@@ -170,7 +170,7 @@ def test_the_first_fault_is_what_every_command_says(inside, judged, tmp_path, te
         ("slots(4,4)", "slots has 1 argument, slots(K)"),
     ],
 )
-def test_what_was_meant_is_told(judged, fact, fault):
+def test_what_was_meant_is_suggested(judged, fact, fault):
     status, lines = judged(f"slots(4). view(0,0).\n{fact}.")
     assert (status, lines) == (2, [f"2: {fact}: {fault}", MORE])
     for name in ("wall", "place", "at", "a" * 100_000):
@@ -186,7 +186,7 @@ def test_the_page_tells_each_form():
     assert {*NAMED.values()} <= {*told}
 
 
-def test_each_form_is_read_as_it_is_told():
+def test_each_form_is_read_as_it_is_given():
     """The forms in messages are facts, once their letters are values."""
     values = {
         "K": "4",
@@ -351,7 +351,7 @@ def test_a_start_that_looks_like_an_arrival(judged):
 
 
 @pytest.mark.slow
-def test_every_start_can_be_told_without_the_warning(inside, judged, tmp_path):
+def test_every_start_can_be_given_without_the_warning(inside, judged, tmp_path):
     """Counted from the gateway that is left by, the same exploration has as many maps."""
     seen = instance(grid(3, 3), "snake", facing=2).experience
     turn = seen.turns[0]
@@ -370,7 +370,7 @@ def test_every_start_can_be_told_without_the_warning(inside, judged, tmp_path):
 
 
 def test_turning_back_everywhere(judged):
-    """Whoever takes 0 for straight on, along a corridor."""
+    """An author who takes 0 for straight on, along a corridor."""
     corridor = [(0,), (0, 2), (0, 2), (0, 2), (0,)]
     assert warned(judged, [0, 0, 0, 0], corridor) == [f"4: step 2: warning: {ALWAYS}"]
     assert not warned(judged, [0, 2, 2, 2], corridor)
@@ -441,7 +441,7 @@ def test_generated_instances_are_seldom_warned_of(inside, tmp_path):
 
 # Beside encodings/input.lp
 
-SAME = {  # errors of input.lp of which one is told
+SAME = {  # errors of input.lp of which only one is reported
     r"(\d+),no_step": r"\1,no_turn",
     r"-1,no_step\((-\d+)\)": r"-1,negative(\1)",
     r"-1,(odd|few|many)_slots\(.*\)": "-1,slots",
@@ -484,8 +484,8 @@ def of_validate(file):
 )
 def test_validate_and_input_lp_find_the_same_faults(inside, tmp_path, seeds):
     """In facts that clingo reads both find a fault or neither does; and where every fact could be
-    read, and one K is told, the faults are the same ones. (input.lp cannot see what is wrong with
-    the text: a statement that is no fact, or a predicate that is not known, is no error there,
+    read, and one K is given, the faults are the same ones. (input.lp cannot see what is wrong with
+    the text: a statement that is not a fact, or an unknown predicate, is not an error there,
     or clingo's own.)"""
     texts = {}
     for seed in seeds:
@@ -504,13 +504,13 @@ def test_validate_and_input_lp_find_the_same_faults(inside, tmp_path, seeds):
             continue
         told = of_validate(file)
         if any(error.startswith("-1,") and "slots" in error for error in shown):
-            # No slot is held against a K that is wrong, and where there is neither a K nor a view
-            # nor a turn, no more is told.
+            # No slot is checked against a K that is wrong, and where there is neither a K nor a
+            # view nor a turn, no more is reported.
             shown = {error for error in shown if not re.match(r"\d+,(straight_)?slot", error)}
             told = {error for error in told if not re.match(r"\d+,(straight_)?slot", error)}
             if not re.search(r"\b(slots|view|turn)\(", text):
                 shown &= {"-1,no_slots"}
-        # A turn out of range is told once; after a gap nobody knows where the marker lies.
+        # A turn out of range is reported once; after a gap nobody knows where the marker lies.
         shown -= {
             error
             for error in shown

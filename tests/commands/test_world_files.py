@@ -155,11 +155,11 @@ FAULTS = {
 
 
 @pytest.mark.parametrize(("facts", "said"), FAULTS.items())
-def test_faults_of_facts_are_told_with_their_line(tmp_path, facts, said):
+def test_faults_of_facts_are_reported_with_their_line(tmp_path, facts, said):
     assert said in refused(tmp_path, facts)
 
 
-def test_a_link_may_be_told_from_both_ends(tmp_path):
+def test_a_link_may_be_given_from_both_ends(tmp_path):
     once = world(read(tmp_path, "slots(4). link(a,0,b,1)."))
     twice = world(read(tmp_path, "slots(4). link(a,0,b,1). link(b,1,a,0). link(a,0,b,1)."))
     assert once == twice
@@ -475,13 +475,13 @@ def test_trizbort_labels_that_lead_up_or_down_are_no_directions(tmp_path):
         (b"image: a.pgm\nfree_thresh: 0.2\n", "resolution is not given"),
     ],
 )
-def test_what_is_no_world_is_told(tmp_path, content, said):
+def test_what_is_not_a_world_is_refused(tmp_path, content, said):
     (tmp_path / "x").write_bytes(content)
     with pytest.raises(InputError, match=said):
         load(tmp_path / "x")
 
 
-def test_slots_of_a_file_are_kept_if_only_north_is_told():
+def test_slots_of_a_file_are_kept_if_only_north_is_given():
     file = FILES / "museum.world"
     assert load(file, north=0).environment.map.links == load(file).environment.map.links
     assert load(file, north=45).environment.map.slots == 8

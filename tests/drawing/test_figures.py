@@ -24,7 +24,7 @@ SOON = "circumscription", "first", "place", "figure1", "figure3", "equation1"
     [n if n in SOON else pytest.param(n, marks=pytest.mark.long) for n in NAMES],
 )
 def test_the_committed_figures_are_what_is_drawn(tmp_path, monkeypatch, name):
-    """By their texts and parts; and where no line bends, by the coordinates, but for what may
+    """By their texts and parts; and where no line bends, by the coordinates, except for what may
     differ from machine to machine."""
     monkeypatch.chdir(ROOT)
     assert main(["figures", name, "-d", str(tmp_path)]) == 0
@@ -53,8 +53,8 @@ def test_a_figure_that_is_not_there(capsys, tmp_path):
     assert not any(tmp_path.iterdir())
 
 
-def test_maps_that_can_be_told_apart():
-    """Of the two optimal 3x3 maps none can be told from the grid; of the two of 4x4 one."""
+def test_maps_that_walks_distinguish():
+    """Walks distinguish no optimal 3x3 map from the grid, and one of the two of 4x4."""
     for size, told in ((3, [False, False]), (4, [False, True])):
         experience = read(ROOT / f"instances/grid-{size}x{size}-snake.lp")
         made = instance(grid(size, size), "snake")

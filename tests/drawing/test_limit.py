@@ -1,5 +1,5 @@
 """The time limit of drawings: what is late is drawn plainly, and says so; and a map is shown before
-all maps are found. What is late is told by counting, not by a clock."""
+all maps are found. What is late is determined by counting, not by a clock."""
 
 import json
 import random
@@ -98,7 +98,7 @@ def test_a_plain_drawing_has_every_gateway_in_its_order(name):
     met = under(world, laid.lines)
     assert laid.note in (("", NOTE) if not met else (f"{NOTE}, and {UNDER}",))
     assert len(met) <= 1
-    if laid.note:  # then nothing is told of faces and crossings
+    if laid.note:  # then faces and crossings are not reported
         assert (laid.faces, laid.outer, laid.crossing) == ([], -1, [])
 
 

@@ -209,7 +209,7 @@ def straight_scenes(number):
         if draw.random() < 0.8:
             world = shortened(world, draw)
         scene = walk(world, draw.choice([1, 10, 60, 200, 500]), draw)
-        scale = draw.choice([1, 1, 2])  # eight slots, of which four are gateways
+        scale = draw.choice([1, 1, 2])  # eight slots, four of them gateways
         yield Scene(
             TopologicalMap(
                 4 * scale,
@@ -256,7 +256,7 @@ def test_places_with_long_numbers_and_one_place_alone():
 
 
 def with_a_bridge():
-    """A grid of 4 x 4 with a gap in the midst, and a link from there to the outside."""
+    """A grid of 4 x 4 with a gap in the middle, and a link from there to the outside."""
     world = grid(4, 4).map
     number = {place: n for n, place in enumerate(sorted(world.stars))}
     gap = {((1, 1), 1), ((1, 2), 3)}
@@ -268,7 +268,7 @@ def with_a_bridge():
     links |= {(5, 1): (15, 2), (15, 2): (5, 1)}
     stars = {number[place]: set(star) for place, star in world.stars.items()}
     stars[15].add(2)
-    last = sorted(stars, key=lambda place: (place in (5, 15), place))  # the bridge is no part of it
+    last = sorted(stars, key=lambda place: (place in (5, 15), place))  # the bridge ends come last
     world = TopologicalMap(4, {place: frozenset(stars[place]) for place in last}, links)
     return Scene(world, [(0, 1), (1, 3)], "made")
 
@@ -423,7 +423,7 @@ def call(*arguments, **environment):
     done = subprocess.Popen([BIN / "topomap", *arguments], stdout=there, env=env, cwd=ROOT)
     os.close(there)
     shown = b""
-    with contextlib.suppress(OSError):  # how the end of a terminal is told
+    with contextlib.suppress(OSError):  # a terminal reports its end as an OSError
         while piece := os.read(here, 1 << 16):
             shown += piece
     os.close(here)

@@ -8,8 +8,8 @@ An experience is ``(slots, views, turns, landmarks, marker, known)``: ``views[t]
 seen after step t, ``turns[t]`` the turn of step t (``turns[0]`` is unused),
 ``landmarks[t]`` the set of landmarks recognised after step t; ``marker`` is what was done
 with the marker and when, as ``(t, "put")``, ``(t, "took")``, ``(t, "saw")``, or with the name of
-another one, ``(t, "put", name)``; ``turns[t]`` is "start" or "look" of a step that is no travel;
-``known`` is a list of
+another one, ``(t, "put", name)``; ``turns[t]`` is "start" or "look" of a step that is not a travel
+step; ``known`` is a list of
 what is known besides views: ``("compass", t, slot)``, ``("shift", t, x, y)``, ``("length", t, d)``,
 ``("same", t, u)``, ``("apart", t, u)``, ``("drift", percent)``, ``("stretch", percent)``,
 ``("straight", t, s, r)`` (with s = r: no other gateway is on that path), ``("tolerance", slots)``.
@@ -235,7 +235,7 @@ def counterpart(slots, views, at, t, slot, inexact):
 
 def marked(marker, at):
     """Whether after the last step each marker is seen if it is where the agent is, and not
-    else: its whole story is told again."""
+    else: its whole story is followed again."""
     for name in {tuple(mark[2:]) for mark in marker}:
         lies = None
         for t, (place, _) in enumerate(at):
@@ -252,7 +252,7 @@ def marked(marker, at):
 
 
 def contradicts(experience, at):
-    """Whether dstates contradict what is known besides views: each statement is held against each
+    """Whether dstates contradict what is known besides views: each statement is compared with each
     pair of steps, by its definition."""
     slots, views, turns, _, _, known = experience
     told = {}
@@ -314,7 +314,7 @@ def on_one_path(experience, t):
 
 
 def looks_alike(experience, t, place, gateway):
-    """Whether visit t sees what is seen from this gateway of a place, but for landmarks."""
+    """Whether visit t sees what is seen from this gateway of a place, except for landmarks."""
     slots, views, *_, known = experience
     (tolerance,) = [one[1] for one in known if one[0] == "tolerance"] or [0]
     here = sorted(views[t])

@@ -302,7 +302,7 @@ def marker() -> Iterator[Query]:
 
 
 def knowledge() -> Iterator[Query]:
-    """Experiences of which more is known than views: all that is asked of others, what is broken if
+    """Experiences with more known than views: all that is asked of others, what is broken if
     it may be, the phases, and statements."""
     known = [*KNOWN.values(), *(informed(random.Random(f"known {seed}"), 7) for seed in range(30))]
     told = [*LOGS.values(), *(logs(random.Random(f"logs known {seed}"), 6) for seed in range(30))]
@@ -362,7 +362,7 @@ KNOWN = {
 
 
 def rested(experience: Experience, step: int, kind: str, **more) -> Experience:
-    """The same with a step put in that is no travel: the view of the step before it, again."""
+    """The same with an inserted step that is not a travel: it has the view of the step before."""
     views = [*experience.views[:step], experience.views[step - 1], *experience.views[step:]]
     turns = [*experience.turns[: step - 1], None, *experience.turns[step - 1 :]]
     return Experience(experience.slots, views, turns, **{kind: [step]}, **more)
@@ -398,7 +398,7 @@ LOGS = {
 }
 
 
-# Pairs of gateways that are told, and bearings that are not exact: each at its border.
+# Pairs of gateways that are given, and bearings that are not exact: each at its border.
 BOTH = [(0, 2), (1, 3)]  # all that are opposite, of four
 DRIFTING = Experience(12, [[0, 4, 8], [0], [0, 5, 7]], [0, 0])
 BENT = {
@@ -443,7 +443,7 @@ BENT = {
     "a landmark too much": Experience(12, [[0], [0, 4], [0]], [0, 0], [(), (), ["a"]], tolerance=1),
     "a landmark too few": Experience(12, [[0], [0, 4], [0]], [0, 0], [["a"], (), ()], tolerance=1),
     "one opposite, and one not": Experience(8, [[0, 4], [0], [0, 5]], [0, 0], tolerance=1),
-    "opposite, as told": replace(ROUND, straight=[[]] * 6),
+    "opposite, as given": replace(ROUND, straight=[[]] * 6),
     "all opposite": replace(EXPERIENCES["ahead"], straight=[[], [(0, 2)], BOTH]),
     "round a corner": replace(EXPERIENCES["square"], straight=[*[[(0, 3)]] * 4, [(0, 1)]]),
     "round once more": replace(
@@ -469,7 +469,7 @@ def places_of(name):
 
 
 def bearings() -> Iterator[Query]:
-    """Experiences where pairs of gateways are told, or bearings are not exact, with the path axiom
+    """Experiences where pairs of gateways are given, or bearings are not exact, with the path axiom
     and without it; and others without it."""
     cases = [places_of(name) for name in ("crescent", "oxbow", "loop")]
     drawn = [bent(random.Random(f"bearings {seed}"), 7) for seed in range(40)]
@@ -544,7 +544,7 @@ def shapes(experience: Experience, truth: Truth, *more: str) -> Iterator[Query]:
             options = how
         for form in forms(*parts):
             if (form, part, bool(experience.straight)) == ("paper", "boundary", True):
-                continue  # it has no left and right of paths whose gateways are told
+                continue  # it has no left and right of paths whose gateways are given
             if form == "paper" and more and part in ("boundary", "perpendicular"):
                 continue  # it states them of paths that do not come back
             under = FORMS[form].relative_to(ENCODINGS)
@@ -605,7 +605,7 @@ def exceptions_of(h: Hypothesis) -> frozenset[str]:
 
 
 def off_or_bent() -> Iterator[Query]:
-    """What a step may break where pairs of gateways are told, or bearings are not exact, and each
+    """What a step may break where pairs of gateways are given, or bearings are not exact, and each
     visit sees as many gateways. Where visits of one place take other gateways to be on one path, it
     is not defined what a path is; so nothing but views is then broken, or no view is."""
     # The way back ends where two gateways are seen, and was one. (All else breaks more than that.)
@@ -633,7 +633,7 @@ def off_or_bent() -> Iterator[Query]:
 
 
 def given_up_of(experience: Experience, every: list[Assignment]) -> Iterator[Query]:
-    """All dstates of which no view is wrong, with what they break; those that break nothing else;
+    """All dstates without a wrong view, with what they break; those that break nothing else;
     and those that break nothing."""
     names = [*reasons(experience)]
     views = [name for name in names if name.startswith("view")]
@@ -953,8 +953,8 @@ def ends() -> Iterator[Query]:
 
 
 def begun(facts: str, experience: Experience, pairs: phase_answers.Pairs, horizon: int) -> Query:
-    """What is asked of a beginning: its hypotheses, but for those which take visits to be of
-    one place that the whole tells apart."""
+    """What is asked of a beginning: its hypotheses, except for those which take visits to be of
+    one place that the whole separates."""
     answers = frozenset(
         ((), frozenset(f"at({t},{p},{s})" for t, (p, s) in enumerate(at)))
         for at in Truth(experience.cut(horizon)).final
@@ -966,7 +966,7 @@ def begun(facts: str, experience: Experience, pairs: phase_answers.Pairs, horizo
 def sizes() -> list[Query]:
     """What the size of the encodings is taken by: each experience with all the parts, one in
     four where rules may be waived, one in five of what is asked of the phases, one in seven of
-    what is asked step by step, and a large exploration of which it is known what visits are new.
+    what is asked step by step, and a large exploration in which it is known which visits are new.
     """
     files = ("topomap", "bound", "query", *PARTS, "genus", "minimal")
     many = ("-c", "places=99")
@@ -996,7 +996,7 @@ def check() -> Iterator[Query]:
 
 
 def check_bent() -> Iterator[Query]:
-    """The same where pairs of gateways are told, or bearings are not exact."""
+    """The same where pairs of gateways are given, or bearings are not exact."""
     alone = ("boundary", NO_PATH_AXIOM)
     for experience, at in bent_maps(160):
         yield from judged(experience, at, DEMANDS, (*DEMANDS, NO_PATH_AXIOM), alone, ())
@@ -1101,7 +1101,7 @@ def statements(
     tests: dict[str, Callable[[Hypothesis], bool]],
     *more: str,
 ) -> Iterator[Query]:
-    """Statements, each with what it says of a hypothesis, told of each hypothesis."""
+    """Statements, each with its truth value in a hypothesis, for each hypothesis."""
     answers = set()
     for at, h in truth.final.items():
         atoms = {f"at({t},{p},{s})" for t, (p, s) in enumerate(at)}
@@ -1158,7 +1158,7 @@ def further() -> Iterator[Query]:
 
 
 def further_bent() -> Iterator[Query]:
-    """The same of maps in which pairs of gateways are told, and where a compass is, too."""
+    """The same of maps in which pairs of gateways are given, and in which there is a compass."""
     for seed in range(70):
         draw = random.Random(f"further bent {seed}")
         if seed % 3:
@@ -1199,7 +1199,7 @@ def signed(draw: random.Random) -> tuple[Experience, list]:
 
 
 def rings() -> Iterator[tuple[random.Random, list[Standing]]]:
-    """Maps that look alike, but for what a marker tells, or a sign: rings of some places, of
+    """Maps that only a marker or a sign distinguishes: rings of some places, of
     which each may have a dead end beside it."""
     for seed in range(60):
         draw = random.Random(f"rings {seed}")
@@ -1329,7 +1329,7 @@ def following() -> Iterator[Query]:
 
 
 def following_bent() -> Iterator[Query]:
-    """The same of experiences where pairs of gateways are told, and without the path axiom."""
+    """The same of experiences where pairs of gateways are given, and without the path axiom."""
     draws = [bent(random.Random(f"following bent {seed}"), 7) for seed in range(90)]
     draws = [one for one in draws if one.straight and not one.tolerance]
     draws += [one for one in BENT.values() if one.straight]
@@ -1372,7 +1372,7 @@ def followed(number: int, experience: Experience, *loaded: str) -> Iterator[Quer
     few = () if bound is None else ("-c", f"places={bound}")
     yield asked(found, parts=parts, arguments=(*ignore, *few))
     costs = {at: h.cost() for at, h in every.items()}
-    if loaded and number % 3 < 2:  # what a map costs is not told without the path axiom
+    if loaded and number % 3 < 2:  # what a map costs is not stated without the path axiom
         closed = [((), atoms(at)) for at in truth.having("closed")]
         ends = (*steps, f":- not closed({names[-1]}).")
         yield asked(closed, arguments=ignore, steps=ends)
@@ -1467,7 +1467,7 @@ def alone() -> Iterator[Query]:
     sides = f"{BENT['all opposite'].facts()} #const with_sides = 0."
     for part in ("paper/boundary", "paper/beyond/exceptions"):
         yield Query(("paper/topomap", "paper/beyond/straight", part), sides, frozenset())
-    # A file of what is not told changes nothing.
+    # A file for facts that are not given changes nothing.
     for name in ("ahead", "lasso"):
         found = frozenset(((), ats(at)) for at in Truth(EXPERIENCES[name]).final)
         for file in ("straight", "tolerance", "compass"):

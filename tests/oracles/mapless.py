@@ -20,7 +20,7 @@ PARTS = [
     ("boundary",), ("planar", "boundary"),
 ]  # fmt: skip
 LATE = {"closed", "travelled"}
-LIMIT = 20_000  # reasons that are held against beginnings of assignments, until it is left open
+LIMIT = 20_000  # reasons that are compared with beginnings of assignments, until it is left open
 
 
 def candidate(draw: random.Random, most: int) -> tuple[Experience, tuple[str, ...], int | None]:
@@ -51,7 +51,7 @@ def misread(draw: random.Random, experience: Experience) -> Experience:
 
 
 class Held:
-    """Reasons held against assignments of dstates. The names are those of single reasons, of whole
+    """Reasons compared with assignments of dstates. The names are those of single reasons, of whole
     rules, and of what is seen after one step."""
 
     def __init__(self, experience: Experience, bound: int | None):
@@ -62,7 +62,7 @@ class Held:
         return range(first, self.experience.steps + 1)
 
     def singles(self, name: str) -> list[str]:
-        """What the name stands for, but for views and boundaries; a single reason for itself."""
+        """What the name stands for, without views and boundaries; a single reason for itself."""
         pairs = [f"({t},{u})" for t, u in combinations(self.steps(1), 2)]
         runs = [f"({a},{b})" for a, b in combinations(self.runs, 2)]
         half = self.experience.slots // 2
@@ -84,7 +84,7 @@ class Held:
         return whole.get(name, [name])
 
     def all_singles(self, names: list[str]) -> list[str]:
-        """The single reasons that are in force with these, but for those of boundaries."""
+        """The single reasons that are in force with these, except for those of boundaries."""
         seen = sorted(int(name[5:-1]) for name in names if re.fullmatch(r"view\(\d+\)", name))
         views = [f"view({u},{t})" for t, u in combinations(seen, 2)]
         rest = [name for name in names if not re.fullmatch(r"view\(\d+\)", name)]

@@ -152,7 +152,7 @@ def contradicting(number: int) -> Iterator[tuple[Experience, At]]:
 
 
 def coming_back(number: int) -> Iterator[tuple[Experience, At]]:
-    """Maps of which, as a rule, a path is circular or holds a place twice."""
+    """Maps in which, as a rule, a path is circular or holds a place twice."""
     for seed in range(number):
         draw = random.Random(f"coming back {seed}")
         experience = random_experience(draw, draw.choice([4, 5, 6, 7]))
@@ -165,9 +165,9 @@ def coming_back(number: int) -> Iterator[tuple[Experience, At]]:
 
 
 def bent_maps(number: int) -> Iterator[tuple[Experience, At]]:
-    """Maps, with errors or without, where pairs of gateways are told, or bearings are not exact: of
-    the very experience, and of one of which less is told, or less exactly; some with paths that
-    come back."""
+    """Maps, with errors or without, where pairs of gateways are given, or bearings are not exact:
+    of the very experience, and of one about which less is given, or less exactly; some with paths
+    that come back."""
     # Two circular paths through one place, neither with the other on both of its sides.
     rings = Experience(
         4, [[*range(4)]] * 3, [1, 2], straight=[[(0, 1), (2, 3)]] * 2 + [[(1, 2), (0, 3)]]

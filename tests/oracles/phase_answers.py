@@ -62,7 +62,7 @@ class Pairs:
         )
 
     def _contradicts(self, p: int, t: int, s: int) -> bool:
-        """Whether compass, odometry, or what is told of visits, contradicts such a pair."""
+        """Whether compass, odometry, or what is stated about visits contradicts such a pair."""
         experience = self.experience
         at = [(step, 0) for step in range(experience.steps + 1)]
         at[t] = p, s

@@ -1,5 +1,5 @@
 """Rule mutation: every encoding, changed in one place at a time, must give a wrong answer
-to some query of tests/oracles/known_answers.py, but for the mutants that
+to some query of tests/oracles/known_answers.py, except for the mutants that
 tests/oracles/equivalent.toml proves to be equivalent. ``make mutate`` tries them all and writes
 docs/mutation.md.
 

@@ -1,5 +1,5 @@
 """All further walks through maps, by definition: what the plans of topomap explore, and the
-encodings for them, are held against. It shares nothing with either."""
+encodings for them, are compared with. It shares nothing with either."""
 
 from dataclasses import replace
 from itertools import combinations, product
@@ -29,7 +29,7 @@ def drawn(draw, most=4, steps=8):
 
 def drawn_bent(draw, most, steps):
     """Some hypotheses, with or without the path axiom, of an experience with exact bearings where
-    pairs of gateways are told, and matter; or a compass is."""
+    pairs of gateways are given, and matter; or a compass is."""
     while True:
         experience = bent_walk(draw, steps)
         if experience.tolerance or not (experience.straight or experience.compass):
@@ -46,8 +46,8 @@ def drawn_bent(draw, most, steps):
 
 
 def bent(draw, among):
-    """The same maps, where pairs of gateways are told: at each place the same ones in all of them,
-    but now and then."""
+    """The same maps, where pairs of gateways are given: at each place the same ones in all of them,
+    with a few exceptions."""
     pairs = {}
 
     def drawn_pairs(place, star):
@@ -119,7 +119,7 @@ def asked(draw, number, most):
 
 
 # All walks, by definition: what is known is where the agent is in each map (None: the map does
-# not say), where the marker lies, and which pairs of maps were told apart.
+# not say), where the marker lies, and which pairs of maps were distinguished.
 
 
 def sight(one, here):
@@ -163,7 +163,7 @@ def worst(among, pairs):
 
 def walks(among, carried):
     """Each state that walks lead to, first by the shortest walk, and of these by the one of
-    least turns: the walk, the pairs that are told apart, and the maps that the walk led out of."""
+    least turns: the walk, the pairs that it distinguishes, and the maps that it left."""
     heres = tuple((one.dstate, one.marker) for one in among)
     start = heres, carried, frozenset(), frozenset()
     level, known = {start: ()}, {start}
@@ -220,7 +220,7 @@ def alike(one, other):
 
 
 def same(one, other):
-    """Whether the maps are one but for names, with the agent at one dstate, as far as it can
+    """Whether the maps are one up to names, with the agent at one dstate, as far as it can
     go; they are closed."""
     slots = one.world.slots
     places = {

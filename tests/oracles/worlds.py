@@ -66,7 +66,7 @@ def wandering(draw, made, start, steps):
 
 
 def informed(draw: random.Random, steps: int) -> Experience:
-    """A walk of which more is known than views: some of compass, odometry, lengths, and visits of
+    """A walk with more known than views: some of compass, odometry, lengths, and visits of
     one place or of two, of some steps or of all, most of it true."""
     made = random_world(draw)
     start = draw.choice(sorted(made.links))
@@ -323,7 +323,7 @@ def marks(experience, step):
 
 
 def told(experience, step):
-    """What is told of a step."""
+    """The facts about a step."""
     pairs = {
         name: frozenset(one for one, other in getattr(experience, name) if other == step)
         for name in ("same", "apart")

@@ -401,7 +401,7 @@ def test_want_of_memory_elsewhere(tmp_path):
 
 def test_a_thread_that_ends_unheard_is_not_waited_for(monkeypatch):
     def end(*_, **__):
-        raise SystemExit  # as MemoryError does where not even that can be told
+        raise SystemExit  # as MemoryError does where not even that can be reported
 
     monkeypatch.setattr(programs.Program, "solve", end)
     with pytest.raises(Stopped, match="out of memory"):

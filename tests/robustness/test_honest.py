@@ -2,7 +2,7 @@
 
 Every subcommand that searches is driven into its limit, and what it says is read. The limits
 always bite: the instances are so large that no machine is done with them in that time, or there
-is one map more than may be told, or one step less than is needed.
+is one map more than may be reported, or one step less than is needed.
 """
 
 import html
@@ -41,10 +41,10 @@ PROVED = {
     r"none of these unsound": "each of those that are counted was checked",
     r"no walk of at most 1 steps does better, a longer one may": "all such walks were tried",
     r"not settled: in some or (none|all)": "both are left open",
-    r"certain now: .*": "what holds in all maps by the solver's word, told once it is settled",
+    r"certain now: .*": "what holds in all maps by the solver's word, stated once it is settled",
     r"next: nothing; no walk tells the 2 maps apart": "the best maps are all known at that step",
     r"(?m)^planarity .*": "the head of the table's columns",
-    r"a tour over every way": "what is told of the world, not of maps",
+    r"a tour over every way": "about the world, not about maps",
     r"a random walk over every way": "the same",
     r"with all pending gateways": "the name of a figure: equation (1) as the paper has it",
     r"(?m)^ +all +\d.*": "the row of the sums, of the nodes met until then",
@@ -124,7 +124,7 @@ def made(tmp_path_factory):
 
 
 def said(done):
-    """What a call printed, but for progress lines."""
+    """What a call printed, without progress lines."""
     return done.stdout + "".join(
         line + "\n" for line in done.stderr.splitlines() if line.startswith(("instances/", "topom"))
     )
@@ -277,7 +277,7 @@ def test_none_is_said_where_there_is_none(inside):
 
 
 def test_one_of_two_maps_is_not_said_to_be_the_only_one(inside, tmp_path):
-    """Whatever was left out of the two."""
+    """Whichever of the two was left out."""
     whole, file = tmp_path / "whole.json", tmp_path / "maps.json"
     assert not inside("solve", GRID, "--optimal", "--json", "-o", whole).returncode
     two = json.loads(whole.read_text())
@@ -336,7 +336,7 @@ def test_a_search_that_found_no_map_says_so(inside):
     assert done.stderr == f"{LARGE}: no map found yet; partial: timeout\n"
 
 
-def test_a_scene_is_one_of_those_found_unless_it_is_told_otherwise():
+def test_a_scene_is_one_of_those_found_unless_stated_otherwise():
     seen = read(ROOT / GRID)
     (at, *_) = [one.at for one in solving.best(seen, Query(), Watch()) if one.proved]
     scene = scenes.Scene(seen.map_of(at), at, "made")
@@ -358,7 +358,7 @@ def test_one_map_of_a_file_is_not_settled(inside, tmp_path):
     assert done.stdout.endswith("settled: the only map that is optimal, and it is closed\n")
 
 
-def test_more_than_are_counted_are_told_to_be_more(inside):
+def test_more_than_are_counted_are_reported_as_more(inside):
     done = inside("follow", GRID, "--no-wait", "--count-limit", 5, "--planar", "--json")
     last = json.loads(done.stdout.splitlines()[-1])
     assert (last["hypotheses"], last["exact"]) == (5, False)
@@ -492,6 +492,6 @@ def test_every_answer_says_its_format_first_and_last_that_it_is_whole(inside, ma
 
 
 def test_a_kind_that_is_open_is_read_back():
-    """What a partial answer says of its maps is no contradiction."""
+    """What a partial answer says of its maps is not a contradiction."""
     told = {"maps": [], "kind": None, "count": 0, "optimal": True, "complete": False, "fault": "x"}
     assert not document("-", told).whole

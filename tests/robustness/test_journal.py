@@ -123,7 +123,7 @@ def test_what_is_done_is_not_done_again(tmp_path, monkeypatch, way):
 
 
 @pytest.mark.long
-def test_whoever_resumes_comes_to_the_same(tmp_path, monkeypatch):
+def test_a_resumed_run_gives_the_same(tmp_path, monkeypatch):
     """The units do not depend on how many do them."""
     whole, file = tmp_path / "whole", tmp_path / "file"
     for command in ("count", "solve"):

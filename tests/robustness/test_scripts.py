@@ -42,7 +42,7 @@ ENDS = {
 @pytest.mark.parametrize("how", ENDS)
 @pytest.mark.parametrize(("end", "status"), [("", 0), ("sys.exit(3)", 3), ("1 / 0", 1)])
 def test_a_script_ends_with_its_own_status(how, end, status):
-    """Whatever clingo is doing, in threads that nobody waits for any more."""
+    """While clingo is still working, in threads that are no longer waited for."""
     done = script(f"{READ}{ENDS[how]}\n{end}")
     assert (done.returncode, done.stdout.split()[0]) == (status, "5"), done.stderr
     assert [line for line in done.stderr.splitlines() if not line.startswith("  ")] == (
@@ -62,7 +62,7 @@ def test_what_c_has_yet_to_write_is_written_where_a_thread_still_grounds(tmp_pat
 
 
 def test_after_the_end_nothing_is_begun():
-    """What is asked for while the process ends is told to be interrupted."""
+    """A request while the process ends is answered as interrupted."""
     done = script(
         "import atexit\n"
         "def late():\n    print(answer.fault)\n"

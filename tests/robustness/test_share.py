@@ -1,5 +1,5 @@
 """Work shared out among processes and the workers of a Dask cluster: the same numbers and maps
-as by one, whoever is lost."""
+as by one, whichever worker is lost."""
 
 import gc
 import json

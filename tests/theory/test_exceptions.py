@@ -179,7 +179,7 @@ def test_the_search_gives_what_clingo_gives(seed):
 @pytest.mark.parametrize("seed", range(40))
 def test_the_best_maps_are_those_that_are_preferred(seed):
     """Closed, then fewest exceptions, then fewest paths, then fewest places: of all maps by the
-    oracle; and told step by step, the follower has the same."""
+    oracle; and given the steps one by one, the follower has the same."""
     draw = random.Random(f"best {seed}")
     seen = random_experience(draw, draw.choice([4, 6, 7, 8, 9]))
     if seed == 0:

@@ -12,7 +12,7 @@ from oracles.rule_mutation import named_files
 from topomap.model.facts import read
 from topomap.model.vocabulary import STATED
 
-MORE = {  # of which the paper does not know
+MORE = {  # facts that the paper does not have
     "marker": ["drop(0).", "drop(0,coin)."],
     "compass": ["compass(3,1)."],
     "odometry": ["shift(3,1,0)."],

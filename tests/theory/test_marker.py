@@ -122,7 +122,7 @@ def test_what_may_be_left_out_says_nothing():
             assert answers((), same.facts(), encoding=form) == answers((), experience.facts())
 
 
-def test_it_is_no_landmark():
+def test_it_is_not_a_landmark():
     """Two visits of one place may differ in it, and the map knows nothing of it."""
     made = grid(2, 2).map
     experience, truth = observe(made, ((0, 0), EAST), [1, 2, 3, 0, 1, 2, 3, 0], [0], [4])

@@ -24,7 +24,7 @@ from oracles.known_answers import (
     theory,
 )
 
-OPEN = ROOT / "tests/oracles/open.toml"  # mutants of which it is known that a query is missing
+OPEN = ROOT / "tests/oracles/open.toml"  # mutants for which a query is known to be missing
 PORTIONS = 10  # of the mutants that are tried one after the other: each ends in minutes
 
 RULES = """
@@ -203,7 +203,7 @@ print(*marks.values())
 
 @pytest.mark.slow
 def test_what_was_tried_is_known_to_another_process(tmp_path):
-    """Whatever the order of its sets."""
+    """In any order of its sets."""
     for name in ("counter", *"abcdef"):
         (tmp_path / f"{name}.lp").write_text(COUNTER)
     printed = set()
@@ -321,8 +321,8 @@ def test_the_encodings_answer_right(suite):
 @pytest.mark.long
 @pytest.mark.parametrize("portion", range(PORTIONS))
 def test_no_statement_can_be_removed(portion):
-    """Each, but for the listed ones, is missed by some query; and those of which a query is still
-    missing are known one by one."""
+    """Each, except for the listed ones, is missed by some query; and those for which a query is
+    still missing are known one by one."""
     reasons = mutate.listed(mutate.LISTED) | mutate.listed(OPEN)
     chosen = [
         mutant
