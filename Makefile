@@ -13,7 +13,7 @@
 # make knowledge  count what a compass and odometry leave, docs/knowledge.md and its picture (an hour)
 # make simulate   let robots explore 21 worlds, docs/simulations.json (seconds)
 # make atlas      count how ambiguous walks in 22 worlds are, docs/atlas.json and docs/atlas.md
-#                 (twenty minutes; it installs AALpy, which learns the same worlds)
+#                 (half an hour; it installs AALpy, which learns the same worlds)
 # make circumscription   compare both readings of the preference, docs/circumscription.md
 #                 (twenty minutes)
 # make beyond     count what is beyond the paper's table, docs/beyond.json (an hour)

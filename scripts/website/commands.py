@@ -27,7 +27,7 @@ def pages() -> dict[str, str]:
 
 def names() -> list[str]:
     """The commands that have a parser, in the order of the help."""
-    return [name for name in SUBCOMMANDS if name != "clingo"]
+    return [*SUBCOMMANDS]
 
 
 def parser_of(name: str) -> argparse.ArgumentParser:

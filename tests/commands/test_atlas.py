@@ -136,7 +136,10 @@ def test_what_is_cut_is_named(inside, listed):
     page = inside("atlas", listed("grid 3 3"), "--most", 10, "--steps", 12, "--no-peers").stdout
     _, cut = page.split("## What was cut\n")
     assert re.search(r"^- grid 3 3, tour: all: more than 10 maps after step \d+$", cut, re.M)
-    assert "- grid 3 3, random walk: it ended after 12 steps, before it had gone every way" in cut
+    assert (
+        "- grid 3 3, random walk: it ended after 12 steps, before it had gone along every way"
+        in cut
+    )
     assert re.search(r"more than 10 \(step \d+\)", page)
     page = inside("atlas", listed("grid 6 6"), "--seconds", 0.01, "--no-peers").stdout
     _, cut = page.split("## What was cut\n")

@@ -15,13 +15,22 @@ DOCS = ROOT / "docs"
 README = ROOT / "README.md"
 INDEX = DOCS / "README.md"
 GALLERY = DOCS / "gallery.md"
-PAGES = [README, *sorted(DOCS.glob("**/*.md"))]
+OTHERS = [ROOT / "CONTRIBUTING.md", ROOT / "encodings/README.md"]  # pages of the site as well
+PAGES = [README, *OTHERS, *sorted(DOCS.glob("**/*.md"))]
 FENCE = re.compile(r"^```(\w*)(?: (\S+))?\n(.*?)^```", re.M | re.S)
 SHOWN = "asp", "text", "python"  # languages of blocks that show a file, if they name one
 MOST_LINES = 160  # of the README
 # What tests leave to the reader, in blocks of sh: it makes environments, or takes long.
 SETUP = re.compile(r"make\b|(python3? -m )?pip install |git clone |cd |export |python3 -m venv ")
 SLOW = "tour88", "tour40", "topomap report", "topomap table", "tour20.lp --closed"
+
+
+def test_every_block_is_found():
+    """One that is indented, or has no end, would be passed over."""
+    for page in PAGES:
+        fences = re.findall(r"^ *```.*$", page.read_text(), re.M)
+        assert len(fences) == 2 * len(FENCE.findall(page.read_text())), page
+        assert not [line for line in fences if line.startswith(" ")], page
 
 
 def name(page):

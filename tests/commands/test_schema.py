@@ -9,7 +9,8 @@ import pytest
 from conftest import ROOT
 from jsonschema import Draft202012Validator
 from topomap import read, solve
-from topomap.cli import main
+from topomap.cli import main, whole_parser
+from topomap.cli.arguments import parsers
 from topomap.documents.answers import Report
 from topomap.model.found import UNPROVED, Found
 from topomap.model.query import Query
@@ -68,6 +69,7 @@ CALLS = [  # the answer, and a call that gives one
     ("family", "family", "instances/batch.txt", "-d", "{folder}/family"),
     ("path", "path"),
     ("export", "export", GRID, "--planar", "--format", "json"),
+    ("atlas", "atlas", "{folder}/atlas.txt", "--no-peers", "--most", "50", "--steps", "10"),
 ]
 PLAIN = {"import", "export"}  # they write JSON without being asked for it
 APART = {"table"}  # it takes long
@@ -115,6 +117,7 @@ def answers(tmp_path_factory):
             "view(2,0). straight(0,0,0). straight(1,0,2). straight(2,0,0).",
             "logs.lp": "slots(4). view(0,0). turn(1,0). view(1,0). start(2). view(2,0).",
             "worlds.txt": "grid 1 3\n",
+            "atlas.txt": "grid 2 3\ngrid 3 3\n",
             "crescent.lp": (ROOT / "tests/cases/crescent.lp").read_text(),
         }
         for name, text in write.items():
@@ -146,6 +149,7 @@ def answers(tmp_path_factory):
         "explore_proof": folder / "proof.json",
         "simulate_list": ROOT / "docs/simulations.json",
         "table_beyond": ROOT / "docs/beyond.json",
+        "atlas": ROOT / "docs/atlas.json",
     }
     made.append(("solve", cut_short()))
     return made + [(name, json.loads(file.read_text())) for name, file in files.items()]
@@ -158,6 +162,17 @@ def named():
 
 def test_the_schema_is_one():
     Draft202012Validator.check_schema(SCHEMA)
+
+
+def test_each_subcommand_that_writes_json_is_called():
+    """So that a new one cannot be forgotten."""
+    writing = {
+        parser.prog.split()[1]
+        for parser in parsers(whole_parser())
+        if any("--json" in action.option_strings for action in parser._actions)
+    }
+    assert len(writing) > 15
+    assert writing - APART <= {call[1] for call in CALLS}
 
 
 @pytest.mark.slow

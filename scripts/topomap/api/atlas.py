@@ -82,7 +82,13 @@ def atlas_under(
         "steps": steps,
         "seed": seed,
         "living": MOST_LIVING,
-        "peers": {"aalpy": version, "tested": peers.TESTED} if version else None,
+        "peers": {
+            "aalpy": version,
+            "tested": peers.TESTED,
+            "seconds": peers.PATIENCE * seconds,
+        }
+        if version
+        else None,
         "rows": rows,
     }
     return Atlas(data, attempt.fault)
@@ -121,6 +127,7 @@ def _walked(watch: Watch, walk: Walk, most: int, seconds: float) -> dict[str, An
     best = {kind: preferred(walk, kind, seconds, watch) for kind in KNOWLEDGE}
     return {
         "steps": len(walk.route),
+        "turns": list(walk.seen(False)[0].turns),
         "whole": walk.whole(),
         "maps": {kind: one.document() for kind, one in counts.items()},
         "settling": {kind: one.document() for kind, one in settling.items()},

@@ -23,7 +23,9 @@ def add(group: Any) -> None:
   topomap export maps.json --format clingraph | clingraph --engine=neato --out=render""",
     )
     add_scene(made)
-    made.add_argument("--format", required=True, choices=EXPORTS)
+    made.add_argument(
+        "--format", required=True, choices=EXPORTS, help="the format to write (required)"
+    )
     made.add_argument("-o", "--output", metavar="FILE", help="file to write (default: stdout)")
 
 

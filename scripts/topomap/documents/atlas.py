@@ -20,7 +20,7 @@ HEAD = """\
 
 How many maps explain what an explorer saw? This page gives their number after each step of two
 walks in each of {worlds} worlds. `topomap atlas` wrote it from [atlas.json](atlas.json), which
-has all figures; `make atlas` counts again.
+has all figures, and each walk as a list of turns; `make atlas` counts again.
 
 The *tour* goes along every way, comes back to where it began, and is as short as such a walk can
 be. The *random walk* goes on until it has gone along every way, but it ends after {steps} steps
@@ -57,8 +57,12 @@ others may become closed during it.)
 - If there are more than {living} other maps, {living} of them are tried. If one of these cannot
   be refuted by any walk, that is a proof, too: `none (1 of 100 tried)`. Otherwise the cell has a
   lower bound, and then the length of a walk that refutes the maps that were tried.
+- Where the maps were not all counted, only the tree that is described below is tried, and those
+  closed maps that were found: `none (1 of 1 tried)`.
 - `real map open` says that the real map still has pending gateways, so it is not one of the
-  closed maps; or that it is not one of the maps of the kind at all.
+  closed maps; `real map not one of them`, that it is not a map of this kind at all; and `no map`,
+  that there is no map of this kind.
+- A dash says that there is not exactly one map at the end.
 
 In a world with a cycle, once a walk has gone along all ways of the cycle, no further walk leaves
 exactly one map of any of the first three kinds. The reason is that there is a map in which each
@@ -95,8 +99,8 @@ walk tells apart form a class. *Smallest* is the number of these classes: an aut
 predicts each walk rightly has no fewer states. *Learned* is the number of states of the automaton
 with which the algorithm ended, and *moves* is the number of times that the agent travelled until
 then. The algorithm ends when {tested} random inputs do not refute its automaton (AALpy's
-`RandomhWOracle`; seed {seed}). The automaton was then compared with the world; it is marked if it
-predicts something wrongly.
+`RandomhWOracle`; seed {seed}), or when {longest:g} seconds are over. The automaton was then
+compared with the world; it is marked if it predicts something wrongly.
 
 {table}
 
@@ -105,7 +109,8 @@ predicts something wrongly.
 With turns alone, a symmetric world looks the same from several sides. The smallest automaton has
 one state for all dstates that a symmetry exchanges. It predicts everything rightly, but it is not
 the map, as it takes several places for one. Section V of the paper says that the minimal automata
-of earlier methods do not fit environments such as grids; this table measures that. Such a learner gives one automaton, and does not say how many maps explain its walk.
+of earlier methods do not fit environments such as grids; this table measures that. Such a learner
+gives one automaton, and does not say how many maps explain its walk.
 """
 NO_PEERS = """\
 ## Compared with learning an automaton without reset
@@ -171,6 +176,7 @@ def page(data: dict[str, Any]) -> Iterator[str]:
             PEERS.format(
                 aalpy=data["peers"]["aalpy"],
                 tested=data["peers"]["tested"],
+                longest=data["peers"]["seconds"],
                 seed=data["seed"],
                 table=_table(_peers_head(), _peers(rows)),
                 sums=_peers_sums(rows),
@@ -234,21 +240,26 @@ def _settling_head() -> list[str]:
 
 def _settling(rows: Sequence[dict[str, Any]]) -> Iterator[Sequence[Any]]:
     for row, walk in _walks(rows):
-        since = [_since(walk["maps"][kind], "one_since") for kind in KNOWLEDGE]
-        since.append(_since(walk["maps"]["all"], "closed_one_since"))
-        further = [_further(walk["settling"][kind]) for kind in KINDS]
+        left = walk["settling"]
+        since = [_since(walk["maps"][kind], "one_since", left[kind]) for kind in KNOWLEDGE]
+        since.append(_since(walk["maps"]["all"], "closed_one_since", left["closed"]))
+        further = [_further(left[kind], kind) for kind in KINDS]
         yield row["name"], WALKS[walk["walk"]], *since, *further
 
 
-def _since(counted: dict[str, Any], what: str) -> str:
+def _since(counted: dict[str, Any], what: str, left: dict[str, Any]) -> str:
+    """The step from which on there is one map; ``left`` is what is known of those at the end."""
     if counted["stopped"] is not None:
-        return "open"
+        several = left["kind"] in ("never", "walk") or left["met"] > 1
+        return "-" if several else "open"
     return "-" if counted[what] is None else f"step {counted[what]}"
 
 
-def _further(told: dict[str, Any]) -> str:
+def _further(told: dict[str, Any], of_kind: str) -> str:
     """The further walk that leaves only the real map, in a few words."""
     kind, others = told["kind"], told["others"]
+    if kind == "others":
+        return "real map open" if of_kind == "closed" else "real map not one of them"
     if kind == "one":
         return "0 steps"
     if kind == "never":
@@ -261,7 +272,7 @@ def _further(told: dict[str, Any]) -> str:
             return f"{many} steps"
         tried = "" if told["tried"] == others else f" for {told['tried']:,} tried"
         return f"{told['at_least']} or more; {many}{tried}"
-    return {"others": "real map open", "no map": "no map"}.get(kind, f"open ({told['why']})")
+    return "no map" if kind == "no map" else f"open ({told['why']})"
 
 
 def _preferred(rows: Sequence[dict[str, Any]]) -> Iterator[Sequence[Any]]:
@@ -353,8 +364,8 @@ def _peers_sums(rows: Sequence[dict[str, Any]]) -> str:
         ]
         quarter = f" In {len(few)} it has a quarter as many states as dstates: {', '.join(few)}."
         lines.append(
-            f"{how}: the algorithm ended in {len(ended)} of {len(told)} worlds, in {right} of them "
-            f"with an automaton that predicts everything rightly. In {least} worlds its automaton "
+            f"{how}: the algorithm ended in {len(ended)} of {len(told)} worlds; in {right} its "
+            f"automaton predicts everything rightly. In {least} worlds the automaton "
             f"has as many states as the smallest one, and in {whole} a state for each dstate."
             f"{quarter * bool(few)}"
         )
@@ -396,11 +407,14 @@ def _cuts(rows: Sequence[dict[str, Any]]) -> Iterator[str]:
                 last = f"counted to step {counted['stopped'] - 1} ({counted['why']})"
                 yield f"- {where}: {kind}: {last}"
         if not walk["whole"]:
-            yield f"- {where}: it ended after {walk['steps']} steps, before it had gone every way"
+            ended = f"it ended after {walk['steps']} steps"
+            yield f"- {where}: {ended}, before it had gone along every way"
         for kind in KINDS:
             told = walk["settling"][kind]
             if told["kind"] is None:
                 yield f"- {where}: {kind}: the further walk is open ({told['why']})"
+            elif told["living"] is None and kind == "closed":
+                yield f"- {where}: closed: the number of maps at the end is open ({told['why']})"
         for kind in KNOWLEDGE:
             if told := walk["preferred"][kind]["why"]:
                 yield f"- {where}: {kind}: what is preferred is open ({told})"

@@ -206,10 +206,11 @@ class Settled:
 
     ``kind`` is "one" if there is one map, the real one; "walk" if ``refuted.walk`` leaves only the
     real one; "never" if ``refuted.never`` of the others cannot be refuted by any walk; "others" if
-    the real one is not among them; "no map" if there is none; None if that is open, as ``why``
-    says. ``met`` is the number of these maps that were found, ``living`` the number of all of them,
-    and ``others`` the number of those that are not the real one (both None if they were not
-    counted). ``tried`` is the number of others for which it was found out what refutes them.
+    the real one is not among them, however many there are; "no map" if it is known that there is
+    none; None if that is open, as ``why`` says. ``met`` is the number of these maps that were
+    found, ``living`` the number of all of them, and ``others`` the number of those that are not the
+    real one (both None if they were not counted). ``tried`` is the number of others for which it
+    was found out what refutes them.
     """
 
     kind: str | None
@@ -267,8 +268,7 @@ def settled(walk: Walk, kind: str, counted: Counted, seconds: float, watch: Watc
     real = walk.real(kind)
     others = None if many is None else many - real
     if not real:
-        some = kind != "closed" or found
-        return Settled("others", met, many, others) if some else Settled(None, met, why=why)
+        return Settled("others", met, many, others, why=None if many is not None else why)
     if others == 0:
         return Settled("one", met, many, 0)
     # The unfolding is consistent with whatever else is known, but it is not closed if the world is
