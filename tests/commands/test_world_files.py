@@ -312,8 +312,7 @@ def test_a_map_of_pending_gateways_alone_is_refused(tmp_path):
 
 @pytest.mark.parametrize("seed", range(150))
 def test_paths_of_maps_tell_what_is_straight(tmp_path, seed):
-    """What is on one path is had back from the headings of the paths alone, whatever the pairs
-    are."""
+    """What is on one path is recovered from the headings of the paths alone, for any pairs."""
     draw = random.Random(seed)
     made = random_world(draw)
     if draw.random() < 0.7:

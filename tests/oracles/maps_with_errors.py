@@ -20,7 +20,7 @@ LASSO = ("0 1 2", "0: 0 1 2 3", "0: 0 1 2", "1: 0", "0: 0 1 3", "1: 0 1 2 3")
 TRIANGLE = ("0 3", "0: 0 1", "1: 0 1", "1: 0 1")
 EARS = ("0 1 2 3", "0: 0 1", "1: 0 1", "1: 0 1 2 3", "1: 0 1", "1: 0 1", "1: 0 1 2 3")
 TWISTED = ("0 1", "0: 0 1", "1: 0 3", "3: 0 3")
-# The link in the midst of a street is its newest.
+# The link in the middle of a street is its newest.
 GROWING = ("0 1 2", "2: 0 1 a", "0: 0 2 3", "2: 0 3", "3: 0 2 3", "2: 0 3 a")
 CORNERS = ("0 1", "0: 0 1", "1: 0 3")
 TAKEN = ("0 drop", "0: 0 2", "0: 0 pick", "0: 0 2", "0: 0")

@@ -166,7 +166,7 @@ def proof():
 
 @functools.cache
 def journal():
-    """What a run leaves that was cut in the midst of a part."""
+    """What a run leaves that was cut in the middle of a part."""
     with tempfile.TemporaryDirectory() as folder, contextlib.redirect_stderr(io.StringIO()):
         file, snake = Path(folder) / "maps", Path(folder) / "three.lp"
         snake.write_text(THREE)

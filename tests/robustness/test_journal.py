@@ -312,7 +312,7 @@ def test_of_several_instances_the_first_is_gone_on_with(tmp_path):
 
 @pytest.mark.slow
 def test_nothing_that_was_found_is_lost(tmp_path, monkeypatch, capsys):
-    """Not when a run is cut in the midst of a part, and again while it catches up."""
+    """Not when a run is cut in the middle of a part, and again while it catches up."""
     file = tmp_path / "maps.json"
     call = ["solve", PAPER, *CLINGO, "--json", "-o", str(file), "--resume"]
     found = 0

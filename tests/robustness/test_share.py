@@ -347,7 +347,7 @@ def test_no_worker_outlives_the_command(number):
 
 
 def test_no_worker_outlives_a_process_that_is_killed_while_it_works(tmp_path):
-    """Not even in the midst of a unit."""
+    """Not even in the middle of a unit."""
     (tmp_path / "work.py").write_text(
         "import time\nfrom pathlib import Path\n"
         "def stay(number, watch):\n"

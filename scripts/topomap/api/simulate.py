@@ -73,7 +73,7 @@ class Simulation(Reply):
 
     @property
     def tour(self) -> int | None:
-        """How many steps a tour over every way takes somebody who knows the map.
+        """How many steps a tour over every way takes an agent that knows the map.
 
         It is None if the world is too large for that, or if the computation was cut short.
         """

@@ -204,7 +204,7 @@ def verdicts(
 ) -> Iterator[Verdict]:
     """Judge each map by ``check.lp`` and by definition.
 
-    A map is held against what was seen, corrected by what the map says was misread: after at most
+    A map is compared with what was seen, corrected by what the map says was misread: after at most
     ``noise`` steps, and at most as many as its document allows. With ``every`` the verdict says for
     each axiom and default whether the map breaks it. Breaking one is then not a violation, unless
     it is among the ``demands``, or the document says that the map does not.

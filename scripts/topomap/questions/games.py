@@ -12,7 +12,7 @@ from topomap.questions.machine import Action, Machine, Spent, Work
 Walk = tuple[Action, ...]
 Key = Any  # it can be hashed; it determines how the search goes on
 Weighed = tuple[tuple[int, int], ...]  # states, each with the number of its maps
-# Maps with the same views so far, and how many others cannot be told from them.
+# Maps with the same views so far, and how many others cannot be distinguished from them.
 Group = tuple[int, Weighed]
 
 
@@ -95,7 +95,7 @@ class Telling(Game):
         return max([score, *(more + self._alike(weighed) for more, weighed in key)])
 
     def _alike(self, weighed: Weighed) -> int:
-        """An upper bound on how many maps of the group no walk tells from one of them."""
+        """An upper bound on how many maps of the group no walk distinguishes from one of them."""
         if self.apart is None:
             return max(weight for _, weight in weighed)
         return max(
@@ -105,7 +105,7 @@ class Telling(Game):
 
 
 class Seeking(Game):
-    """The game of finding a pending gateway; its value is how many maps predict all of the walk.
+    """The game of finding a pending gateway; its value is how many maps predict the whole walk.
 
     A key has the dstates of the agent in the maps in which the walk goes on. The score is how many
     maps have not come to a pending gateway.
@@ -147,11 +147,11 @@ class Seeking(Game):
             yield action, self._state(on), score - lost
 
     def value(self, key: Weighed, score: int) -> int:
-        """How many maps predict all of the walk."""
+        """How many maps predict the whole walk."""
         return score
 
     def bound(self, key: Weighed, score: int) -> int:
-        """A lower bound on how many maps predict all of any walk from here."""
+        """A lower bound on how many maps predict the whole of any walk from here."""
         return score - sum(weight for _, weight in key)
 
 

@@ -70,7 +70,7 @@ def learned(
     dstates, least = len(looks), len({*classes(world, looks).values()})
 
     class Agent(SUL):  # type: ignore[misc]
-        """An agent in the world, as AALpy wants it. It is never set back."""
+        """An agent in the world, as AALpy needs it. It is never reset."""
 
         inputs = moves = 0
         dstate = start
@@ -79,7 +79,7 @@ def learned(
             """A reset, which this agent does not have."""
 
         def post(self) -> None:
-            """The end of a test, where nothing need be done."""
+            """The end of a test, where nothing has to be done."""
 
         def step(self, turn: int) -> Hashable:
             watch.tick()

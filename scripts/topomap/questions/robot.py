@@ -3,7 +3,7 @@
 It considers the best maps of what it has seen (``solving.best``), and walks what ``explore`` plans
 for them. It stops when the best map is closed and the only one, or when no walk can tell the best
 ones apart. But a closed map that has exceptions to consistent boundaries is often false, because a
-small map explains much. So, before it believes one, the robot walks what is planned for the maps
+small map explains much. So, before it accepts one, the robot walks what is planned for the maps
 without exceptions, until they are all too large (``rivals``).
 """
 
@@ -147,7 +147,7 @@ class Outcome:
 class Others:
     """What a robot is compared with, in steps.
 
-    It has a tour by somebody who knows the map, and random walks. What is missing is None: it is
+    It has a tour by an agent that knows the map, and random walks. What is missing is None: it is
     out of reach, or was cut short if ``fault`` says why.
     """
 
@@ -380,11 +380,11 @@ def rivals(
 
     They are the maps without any exception, with the fewest paths, then the fewest places, that
     have at most LARGER percent more places; in order, and at most MOST_MAPS. They have pending
-    gateways, so a walk can test them. As long as there are some, the best maps are not believed.
+    gateways, so a walk can test them. As long as there are some, the best maps are not accepted.
 
     There is a limit because the map in which every step came to a new place is never refuted, and
     mostly has no exceptions. The limit is less than twice the number of places: a map that is a
-    double cover of the closed one often has no exceptions, either, and no walk tells it from that.
+    double cover of the closed one often has no exceptions, either, and no walk separates the two.
     """
     if maps[0].kind != "optimal" or not maps[0].cost[0]:
         return []
