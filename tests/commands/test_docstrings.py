@@ -106,7 +106,7 @@ def test_entries_are_sentences(name):
 @pytest.mark.parametrize(
     "name", ["solve", "ask", "explain", "explore", "count", "follow", "simulate", "check"]
 )
-def test_units_and_sources_are_told(name):
+def test_units_and_sources_are_stated(name):
     text = " ".join(inspect.getdoc(PUBLIC[name]).split())
     assert re.search(r"timeout: .*seconds", text)
     assert "the paper" in text
