@@ -506,8 +506,12 @@ def test_validate_and_input_lp_find_the_same_faults(inside, tmp_path, seeds):
         if any(error.startswith("-1,") and "slots" in error for error in shown):
             # No slot is checked against a K that is wrong, and where there is neither a K nor a
             # view nor a turn, no more is reported.
-            shown = {error for error in shown if not re.match(r"\d+,(straight_)?slot", error)}
-            told = {error for error in told if not re.match(r"\d+,(straight_)?slot", error)}
+            shown = {
+                error for error in shown if not re.match(r"\d+,((straight|compass)_)?slot", error)
+            }
+            told = {
+                error for error in told if not re.match(r"\d+,((straight|compass)_)?slot", error)
+            }
             if not re.search(r"\b(slots|view|turn)\(", text):
                 shown &= {"-1,no_slots"}
         # A turn out of range is reported once; after a gap nobody knows where the marker lies.
