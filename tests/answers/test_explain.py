@@ -183,7 +183,7 @@ def demand_words(experience, answer):
                 assert {end[0] for end in ways[step - 1]} == set(ends)
             assert all(at[step][0] == step for step in steps[:-1])
         if kind == "bound":
-            assert f"take {len({place for place, _ in at})} place" in words
+            assert f"there would be {len({place for place, _ in at})} place" in words
         if kind == "view":
             for step in numbers:
                 assert " ".join(map(str, sorted(experience.views[step]))) in words
