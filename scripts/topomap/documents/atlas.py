@@ -250,8 +250,8 @@ def _settling(rows: Sequence[dict[str, Any]]) -> Iterator[Sequence[Any]]:
 def _since(counted: dict[str, Any], what: str, left: dict[str, Any]) -> str:
     """The step from which on there is one map; ``left`` is what is known of those at the end."""
     if counted["stopped"] is not None:
-        several = left["kind"] in ("never", "walk") or left["met"] > 1
-        return "-" if several else "open"
+        other_than_one = left["kind"] in ("never", "walk", "no map") or left["met"] > 1
+        return "-" if other_than_one else "open"
     return "-" if counted[what] is None else f"step {counted[what]}"
 
 
