@@ -113,7 +113,7 @@ def table(rows: list[dict[str, Any]], passed: int) -> str:
     needed = sum(one.get("needed", False) for one in rows)
     enough = sum(one.get("enough", False) for one in rows)
     proved = [
-        "| what is proved | walks |",
+        "| what is found | walks |",
         "|---|--:|",
         f"| there is no map, by the search in Python within {SEARCHED} seconds | {searched} |",
         f"| no reason can be left out | {minimal} |",
@@ -126,8 +126,9 @@ def table(rows: list[dict[str, Any]], passed: int) -> str:
         f"These are the figures of {len(rows)} walks of up to {STEPS} steps without a map, with "
         f"several combinations of parts. {passed} more walks were passed over: a default stands in "
         f"the way of a closed map, and `explain` says that instead of giving reasons.",
-        "Not all assignments of places can be tried where there are too many of them, or where a "
-        "gateway has two links in some map: planarity and the sides of paths are not defined then.",
+        "For the other walks it is open whether each reason is needed, or whether the reasons are "
+        "enough: there are too many assignments to be tried, or a gateway has two links in some "
+        "map, and planarity and the sides of paths are not defined then.",
         f"A yardstick is the time of `{YARDSTICK}`, measured after each command.",
     )
     few, tried, yardstick = (textwrap.fill(text, 120, break_on_hyphens=False) for text in texts)

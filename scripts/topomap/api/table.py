@@ -14,7 +14,7 @@ from topomap.runtime.watch import Attempt, Watch
 from topomap.solver.crews import crew as crew_of
 
 Row = dict[str, Any]
-Noted = Callable[[int, int], None]  # the answer says how many of all columns are counted
+Noted = Callable[[int, int], None]  # called with how many of all columns are counted
 
 
 class Table(Reply):

@@ -84,7 +84,7 @@ class StepAnswer:
         if self.plan is not None:
             yield f"  next: {_next(self.plan, self.record, status)}"
         elif status.maps and self.record.tolerance:
-            yield "  next: left out, as maps predict exact bearings, but these bearings are not"
+            yield "  next: left out, as maps predict exact bearings, and those seen are not exact"
         elif status.maps and not self.fault:
             yield "  next: a walk that tells the best maps apart is not found"
         if self.fault:

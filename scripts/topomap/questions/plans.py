@@ -57,7 +57,7 @@ class Planned:
             yield f"and {words.number(len(made.untold) - MOST_PAIRS, 'more pair')}: see --json"
         if 0 < (told := self.among.experience.compass_told()) <= self.among.experience.steps:
             visits = words.number(self.among.experience.steps + 1, "visit")
-            yield f"the compass is left out of the plan: it is known after {told} of {visits}"
+            yield f"the compass is left out of the plan: it is known at {told} of {visits}"
         if self.fault:
             why = FAULTS.get(self.fault, "").format(steps=self.steps)
             yield f"partial: {self.fault}{f'; {why}' * bool(why)}"

@@ -72,7 +72,7 @@ class Refuted:
 
 
 def refute(real: Standing, others: Iterable[Standing], work: Work) -> Refuted:
-    """Find the shortest walk in the real world that refutes all of these maps.
+    """Find the shortest walk in the real world that refutes all of these maps, consistent so far.
 
     If it would take too much work to find it, some walk that refutes them is found.
     """

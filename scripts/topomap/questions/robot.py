@@ -240,7 +240,7 @@ def random_walk(
 
 
 def _length(world: TopologicalMap, start: Place, seed: int, watch: Watch) -> float:
-    """How many steps a random walk takes along every way; infinite if it is given up."""
+    """How many steps a random walk takes to go along every way; infinite if it is given up."""
     ways = len(world.links) // 2
     taken: set[Gateway] = set()
     place = start

@@ -66,7 +66,7 @@ def refusal(experience: Experience, query: Query) -> str | None:
         if known:
             return what
     if experience.compass_told() not in (0, experience.steps + 1):
-        return "a compass that is not given after each step"
+        return "a compass that is not given at each visit"
     return None
 
 
