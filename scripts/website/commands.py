@@ -19,15 +19,17 @@ def pages() -> dict[str, str]:
     index = (
         "# Each command\n\nThese pages are made from the same text as `topomap COMMAND --help`. "
         "[Commands](../../commands.md) says what they are for, and which belong together.\n\n"
-        f"| command | what it does |\n|---|---|\n{listed}"
+        f"| command | what it does |\n|---|---|\n{listed}\n"
+        "`topomap clingo ARGS...` is clingo itself, with clingo's own options: "
+        "[Plain clingo](../../plain-clingo.md).\n"
     )
     made = {f"reference/commands/{name}.md": page(name) for name in names()}
     return {"reference/commands/index.md": index, **made}
 
 
 def names() -> list[str]:
-    """The commands that have a parser, in the order of the help."""
-    return [*SUBCOMMANDS]
+    """The commands that have options of their own, in the order of the help."""
+    return [name for name in SUBCOMMANDS if name != "clingo"]
 
 
 def parser_of(name: str) -> argparse.ArgumentParser:

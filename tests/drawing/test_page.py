@@ -838,9 +838,9 @@ def test_nothing_is_loaded_and_nothing_complains(browser, three):
     browser.get(three[0].as_uri())
     assert browser.get_log("browser") == []
     events = [json.loads(entry["message"])["message"] for entry in browser.get_log("performance")]
-    sent = [e["params"]["request"]["url"] for e in events if e["method"].endswith("WillBeSent")]
-    own = "chrome:", "chrome-untrusted:"  # the browser's first page, if this is its first test
-    assert [url for url in sent if not url.startswith(own)] == [three[0].as_uri()]
+    asked = [e["params"] for e in events if e["method"] == "Network.requestWillBeSent"]
+    page = three[0].as_uri()  # the first page of a browser that has just begun loads other things
+    assert [e["request"]["url"] for e in asked if e["documentURL"] == page] == [page]
 
 
 @pytest.mark.parametrize("width", [1280, 400])
