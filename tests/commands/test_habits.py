@@ -279,6 +279,20 @@ def test_the_citation_is_of_this_version():
     assert released is None or str(released) == day
 
 
+def test_the_bibtex_entries_are_those_of_the_citation():
+    text = (ROOT / "docs/first-questions.md").read_text()
+    known = citation()
+    (paper,) = known["references"]
+    assert f"version = {{{known['version']}}}" in text
+    for one in (known, paper):
+        assert f"{{{one['title']}}}" in text
+    years = str(known["date-released"])[:4], paper["year"]
+    for year in years:
+        assert f"= {{{year}}}" in text
+    for author in paper["authors"]:
+        assert f"{author['family-names']}, {author['given-names']}" in text
+
+
 def test_the_changes_are_by_version_with_the_newest_first():
     numbers = [tuple(map(int, version.split("."))) for version, _ in versions()]
     assert numbers == sorted({*numbers}, reverse=True)

@@ -291,11 +291,11 @@ def _best(told: dict[str, Any]) -> str:
     if not told["maps"]:
         return "no map"
     so_far = ", so far" * (told["kind"] == "best so far")
-    more = "more than " * told["more"]
+    many = f"{told['maps']}{' or more' * told['more']}"
     if told["truth"] is None:
-        return f"open: {more}{told['maps']} best maps{so_far}"
+        return f"open: {many} best maps{so_far}"
     if told["truth"]:
-        return f"yes{so_far}" if told["maps"] == 1 else f"one of {more}{told['maps']}{so_far}"
+        return f"yes{so_far}" if told["maps"] == 1 else f"one of {many}{so_far}"
     other, real = told["cost"], told["true_cost"]
     costs = " ".join(map(str, other)), "none" if real is None else " ".join(map(str, real))
     return f"no: {costs[0]}, real {costs[1]}{so_far}"
