@@ -66,7 +66,6 @@ def cases():
             yield pytest.param(page, made, id=label.splitlines()[0], marks=marks)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(("page", "commands"), [*cases()])
 def test_commands_print_what_the_page_says(tmp_path, page, commands):
     """Those of a block in one folder, one after the other; ``...`` stands for any text. The
