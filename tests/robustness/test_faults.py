@@ -17,6 +17,7 @@ from pathlib import Path
 import pytest
 from conftest import BIN, COLUMNS, ROOT, run
 from oracles.known_answers import CORRIDOR
+from topomap.runtime import files
 from topomap.runtime.watch import Stopped, Watch
 from topomap.solver import programs, solving
 
@@ -85,6 +86,41 @@ def partial(text):
         assert "count" not in result or len(result["maps"]) == result["count"]
     faults = [result["fault"] for result in answer.get("results", [answer])]
     return answer["complete"] is False and faults[-1] in ("interrupted", None)
+
+
+def test_an_interrupt_at_any_moment_leaves_no_temporary_file(tmp_path):
+    """At each line of the writer in turn."""
+
+    def interrupted(at):
+        """Write a file, with an interrupt before line ``at``; returns the lines until then."""
+        lines = 0
+
+        def trace(frame, event, _):
+            nonlocal lines
+            if frame.f_code.co_filename != files.__file__:
+                return None
+            lines += event == "line"
+            if event == "line" and lines == at:
+                raise KeyboardInterrupt
+            return trace
+
+        before = sys.gettrace()
+        sys.settrace(trace)
+        try:
+            with files.output(str(tmp_path / "out")) as out:
+                out.write("new")
+        except KeyboardInterrupt:
+            pass
+        finally:
+            sys.settrace(before)
+        return lines
+
+    at = 1
+    while interrupted(at) == at:
+        assert {path.name for path in tmp_path.iterdir()} <= {"out"}, at
+        at += 1
+    assert at > 20
+    assert (tmp_path / "out").read_text() == "new"
 
 
 def strikes(name, command, folder, seeds, again):

@@ -3,8 +3,8 @@
 import contextlib
 import fcntl
 import os
+import secrets
 import sys
-import tempfile
 from collections.abc import Iterator
 from errno import EISDIR, ELOOP
 from pathlib import Path
@@ -84,15 +84,17 @@ def output(path: str | None, parents: bool = False, binary: bool = False) -> Ite
             with Path(path).open(**how) as device:
                 yield device
             return
-        with _temporary(target.parent, how) as file:
-            try:
+        # The name is known before the file is there, so an interrupt at any moment leaves none.
+        temporary = target.parent / f"{_TEMPORARY}{secrets.token_hex(8)}"
+        try:
+            with _locked(temporary, how) as file:
                 yield file
                 file.flush()
-                Path(file.name).chmod(0o666 & ~_umask())
-                Path(file.name).replace(target)
-            except BaseException:
-                Path(file.name).unlink(missing_ok=True)
-                raise
+                temporary.chmod(0o666 & ~_umask())
+                temporary.replace(target)
+        except BaseException:
+            temporary.unlink(missing_ok=True)
+            raise
     except BrokenPipeError:
         raise
     except OSError as error:
@@ -104,19 +106,18 @@ def output(path: str | None, parents: bool = False, binary: bool = False) -> Ite
         raise InputError(f"{path}: not the name of a file") from None
 
 
-def _temporary(folder: Path, how: dict[str, Any]) -> IO[Any]:
-    """Make a new file in a folder, which is locked while its writer lives.
+def _locked(name: Path, how: dict[str, Any]) -> IO[Any]:
+    """Make a new file, which is locked while its writer lives.
 
-    A writer that was killed leaves a file without a lock; such files are removed.
+    A writer that was killed leaves a file without a lock; such files in the folder are removed.
     """
-    for left in folder.glob(f"{_TEMPORARY}*"):
+    for left in name.parent.glob(f"{_TEMPORARY}*"):
         with contextlib.suppress(OSError), left.open() as old:
             fcntl.flock(old, fcntl.LOCK_EX | fcntl.LOCK_NB)
             left.unlink()
     while True:
-        file: IO[Any] = tempfile.NamedTemporaryFile(  # noqa: SIM115
-            dir=folder, prefix=_TEMPORARY, delete=False, **how
-        )
+        new = os.open(name, os.O_CREAT | os.O_EXCL | os.O_WRONLY | os.O_CLOEXEC, 0o600)
+        file: IO[Any] = os.fdopen(new, **how)
         with contextlib.suppress(OSError):  # this file system has no locks: nothing is removed
             fcntl.flock(file, fcntl.LOCK_EX)
         if os.fstat(file.fileno()).st_nlink:  # otherwise another writer has removed it
