@@ -13,14 +13,20 @@ from website.links import ELSEWHERE, ROOT, for_site, place, targets
 ORIGINS: dict[str, str] = {}  # pages of the site that are files of the repository
 TITLES = {"Exit statuses": "Exit statuses", "The facts": "Instances"}  # of sections as pages
 # What newcomers look for comes first in the search, and what they seldom look for comes last.
-BOOST = {"first-questions.md": 4, "index.md": 8, "knowledge.md": 2, "reference/encodings/": 0.3}
-BOOST |= {"reference/python.md": 0.5, "mutation.md": 0.3, "solve.md": 0.5, "atlas.md": 0.5}
-BOOST |= {
-    "benchmark.md": 0.5,
-    "formats.md": 0.5,
+BOOST = {
+    "index.md": 8,
+    "first-questions.md": 4,
+    "knowledge.md": 2,
     "reference/commands/": 0.7,
-    "changes.md": 0.3,
+    "reference/python.md": 0.5,
+    "formats.md": 0.5,
     "DEVELOPMENT.md": 0.5,
+    "atlas.md": 0.5,
+    "benchmark.md": 0.5,
+    "solve.md": 0.5,
+    "reference/encodings/": 0.3,
+    "mutation.md": 0.3,
+    "changes.md": 0.3,
 }
 LANGUAGES = {".lp": "prolog", ".py": "python", ".cff": "yaml", ".toml": "toml"}
 

@@ -278,6 +278,21 @@ def test_it_works_without_the_learner(inside, listed, monkeypatch):
     assert inside("atlas", listed("grid 2 2"), "--json", "--no-peers").stderr == ""
 
 
+def test_cells_say_what_is_decided_where_a_count_stopped(inside, listed):
+    """Where a count stopped, it is open only if it may be that exactly one map remains."""
+    limits = "--most", 50, "--steps", 10, "--no-peers"
+    page = inside("atlas", listed("grid 3 3\ntorus 3 3"), *limits).stdout
+    _, further = page.split("## Which further walk")
+    rows = dict(re.findall(r"^\| (\w+ 3 3 \| [\w ]+) \| (.*) \|$", further.split("\n## ")[0], re.M))
+    assert rows["grid 3 3 | tour"].startswith(
+        "- | - | - | - | none (1 of 1 tried) | none (44 of 44)"
+    )
+    assert rows["grid 3 3 | random walk"].endswith("| no map")
+    assert rows["torus 3 3 | tour"].startswith(
+        "open | open | open | - | real map not one of them |"
+    )
+
+
 def test_what_the_learner_comes_to_is_told(made):
     pytest.importorskip("aalpy")
     told = made(text="grid 2 3\ngrid 1 2")

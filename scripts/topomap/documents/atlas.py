@@ -243,7 +243,7 @@ def _settling(rows: Sequence[dict[str, Any]]) -> Iterator[Sequence[Any]]:
         left = walk["settling"]
         since = [_since(walk["maps"][kind], "one_since", left[kind]) for kind in KNOWLEDGE]
         since.append(_since(walk["maps"]["all"], "closed_one_since", left["closed"]))
-        further = [_further(left[kind], kind) for kind in KINDS]
+        further = [_further(left[kind], kind == "closed" and not walk["whole"]) for kind in KINDS]
         yield row["name"], WALKS[walk["walk"]], *since, *further
 
 
@@ -255,11 +255,14 @@ def _since(counted: dict[str, Any], what: str, left: dict[str, Any]) -> str:
     return "-" if counted[what] is None else f"step {counted[what]}"
 
 
-def _further(told: dict[str, Any], of_kind: str) -> str:
-    """The further walk that leaves only the real map, in a few words."""
+def _further(told: dict[str, Any], pending: bool) -> str:
+    """The further walk that leaves only the real map, in a few words.
+
+    ``pending`` says that closed maps are meant, and that the real map still has pending gateways.
+    """
     kind, others = told["kind"], told["others"]
     if kind == "others":
-        return "real map open" if of_kind == "closed" else "real map not one of them"
+        return "real map open" if pending else "real map not one of them"
     if kind == "one":
         return "0 steps"
     if kind == "never":
