@@ -182,7 +182,7 @@ def test_the_index_leads_to_each_page():
 
 def test_the_page_for_newcomers_names_what_is_there():
     """Each file and folder, as it is called from the top, or in one of the folders within; and
-    each room of the package."""
+    each subpackage."""
     page = (DOCS / "DEVELOPMENT.md").read_text()
     package = ROOT / "scripts/topomap"
     rooms = [path.parent for path in package.glob("*/__init__.py")]
