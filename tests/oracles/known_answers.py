@@ -18,6 +18,7 @@ from topomap.model.experience import MARKER, Experience, observe
 from topomap.model.facts import parse
 from topomap.model.topology import TopologicalMap
 from topomap.questions.standings import Standing
+from topomap.runtime.limits import LARGEST
 from topomap.solver.programs import FORMS
 from topomap.worlds.environment import EAST, WEST, grid, world
 from topomap.worlds.route import snake
@@ -28,6 +29,7 @@ from oracles.brute_force import Hypothesis
 from oracles.maps_with_errors import (
     DEMANDS,
     INSTANCES,
+    WITH_NUMBERS,
     bent_maps,
     by_hand,
     coming_back,
@@ -347,10 +349,21 @@ KNOWN = {
     "odometry, just not": replace(ROUND, shifts=((10, 0), (0, 10), (-5, 0), (0, -10), (9, 0))),
     "odometry, aside": replace(ROUND, shifts=((10, 0), (0, 10), (-10, 0), (0, -5), (9, 0))),
     "odometry, a gap": replace(ROUND, shifts=((10, 0), None, (10, 0), (10, 0), (10, 0))),
+    # At the border: the way of 20 ends 2 off; that of 99 ends 10 off.
+    "odometry, as far as may be": replace(ROUND, shifts=((11, 0), (0, 0), (-9, 0), (0, 0), None)),
+    "odometry, a little more": replace(ROUND, shifts=((54, 0), (0, 1), (-44, 0), (0, 0), None)),
+    "aside, as far as may be": replace(ROUND, shifts=((0, 11), (0, 0), (0, -9), (0, 0), None)),
+    "aside, a little more": replace(ROUND, shifts=((0, 54), (1, 0), (0, -44), (0, 0), None)),
+    "all the drift there is": replace(
+        ROUND, shifts=((1, 0), (0, 0), (0, 0), (0, 0), None), drift=LARGEST
+    ),
     "drift": replace(ROUND, shifts=((10, 0), (0, 10), (-5, 0), (0, -10), (9, 0)), drift=20),
     "length": replace(THERE, lengths=(100, 90, 100)),
     "length, just not": replace(THERE, lengths=(100, 89, 100)),
     "length, longer": replace(THERE, lengths=(89, 100, 95)),
+    "length, longer, as far as may be": replace(THERE, lengths=(90, 100, None)),
+    "length, a little more": replace(THERE, lengths=(1000, 899, None)),
+    "length, longer, a little more": replace(THERE, lengths=(899, 1000, None)),
     "length, round": replace(ROUND, lengths=(100, 50, 40, 30, 100)),
     "length, unlike": replace(ROUND, lengths=(100, 50, 40, 30, 89)),
     "stretch": replace(THERE, lengths=(100, 89, None), stretch=11),
@@ -375,6 +388,9 @@ LOGS = {
     "looks straight on": rested(seen("0", "0: 0 2", "2: 0 2", "2: 0"), 2, "looks"),
     "a look with odometry": rested(
         ROUND, 2, "looks", shifts=[(10, 0), None, (0, 10), (-10, 0), (0, -10), (10, 0)]
+    ),
+    "a look that moved": rested(
+        ROUND, 2, "looks", shifts=[(10, 0), (5, 0), (0, 10), (-15, 0), (0, -10), (10, 0)]
     ),
     "a log": TWO,
     "a log from a corridor": rested(seen("0 2", "0: 0 2", "2: 0 2", "2: 0"), 2, "starts"),
@@ -1002,6 +1018,17 @@ def check_bent() -> Iterator[Query]:
         yield from judged(experience, at, DEMANDS, (*DEMANDS, NO_PATH_AXIOM), alone, ())
 
 
+def borders() -> Iterator[Query]:
+    """Maps of what is seen, where more is known: what the checker says of them."""
+    for experience in [*KNOWN.values(), *LOGS.values(), *BENT.values()]:
+        less = replace(experience, compass=(), shifts=(), lengths=(), same=(), apart=(), things=())
+        less = replace(less, straight=(), tolerance=2 * less.tolerance)
+        found = sorted(Truth(less).final)
+        for at in random.Random(experience.facts()).sample(found, min(12, len(found))):
+            told = [(step, *dstate) for step, dstate in enumerate(at)]
+            yield from judged(experience, told, ())
+
+
 def judged(experience: Experience, at: list, *every: tuple[str, ...]) -> Iterator[Query]:
     """What is wrong with a map where this is demanded."""
     for demands in every:
@@ -1038,14 +1065,9 @@ def faults() -> Iterator[Query]:
     """Instances with faults."""
     for facts, errors in INSTANCES.items():
         yield Query(("input",), facts, shown(*(f"error({error})" for error in errors.split())))
-    for tolerance, errors in (
-        (-2, ["error(-1,negative_tolerance(-2))"]),
-        (-1, ["error(-1,negative_tolerance(-1))"]),
-        (0, []),
-        (3, []),
-    ):
-        how = ("-c", f"tolerance={tolerance}")
-        yield Query(("input",), "slots(4). view(0,0).", shown(*errors), how)
+    for facts, told, errors in WITH_NUMBERS:
+        how = tuple(word for one in told.split() for word in ("-c", one))
+        yield Query(("input",), facts, shown(*(f"error({error})" for error in errors.split())), how)
 
 
 COMPARED = {"number": int.__eq__, "least": int.__ge__, "most": int.__le__}
@@ -1458,7 +1480,14 @@ def alone() -> Iterator[Query]:
     # That no number is there has a message, and so is said by one that is too small.
     for file, told in (
         ("marker", EXPERIENCES["marker"]),
+        ("marker", LOGS["coin and rope"]),
+        ("logs", TWO),
+        ("logs", LOGS["a second look"]),
+        ("compass", KNOWN["compass"]),
+        ("odometry", KNOWN["odometry"]),
         ("lengths", KNOWN["length"]),
+        ("closures", KNOWN["same"]),
+        ("closures", KNOWN["apart"]),
         ("straight", BENT["all opposite"]),
         ("tolerance", BENT["one slot off"]),
     ):
@@ -1489,6 +1518,7 @@ SUITES = (
     bearings,
     off_or_bent,
     check_bent,
+    borders,
     further_bent,
     following_bent,
     misread,

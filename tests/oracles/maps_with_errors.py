@@ -305,7 +305,78 @@ INSTANCES = {
     f"{ONE} drop(0,a). marker(1,b).": "1,no_marker",
     f"{ONE} drop(0,a). pick(1,a). drop(1,a).": "",
     f"{ONE} marker(a,b).": "-1,no_step(a)",
+    # Each fault where another fact is missing or wrong, too.
+    f"{ONE} pick(a,b). drop(b,a).": "-1,no_step(a) -1,no_step(b)",
+    f"{ONE} drop(2,a).": "2,no_step",
+    f"{ONE} shift(a,1,1). length(b,1).": "-1,no_step(a) -1,no_step(b)",
+    f"{ONE} shift(-1,a,0). length(-1,0).": "-1,no_step(-1)",
+    f"{ONE} compass(-1,9).": "-1,no_step(-1)",
+    f"{ONE} apart(a,a).": "-1,no_step(a)",
+    "slots(4). view(0,0). turn(0,0). start(0).": "0,turn_at_start 0,starts_already",
+    "slots(4). view(0,0). start(0). look(0).": "0,starts_already 0,no_earlier_look",
+    "slots(4). view(0,0). view(1,0). start(1). look(1).": "1,start_and_look",
+    f"{ONE} start(1). look(1).": "1,travels",
+    f"{ONE} start(a). look(a).": "-1,no_step(a)",
+    "slots(4). view(0,0). view(1,0). look(1). length(1,5).": "1,no_way(5)",
+    "slots(4). view(0,0). start(0). length(0,5).": "0,starts_already 0,length_at_start",
+    "slots(4). view(0,0). turn(2,0). view(2,0). drop(1,a). marker(2,a).": (
+        "1,no_turn 1,no_step 2,no_marker"
+    ),
+    "slots(4). view(0,0). pick(1,a).": "1,no_step",
+    "view(0,0). compass(0,a).": "-1,no_slots 0,compass_slot(a)",
+    "view(0,0). compass(0,2147483647).": "-1,no_slots",
+    f"{ONE} shift(1,a,0). length(1,2147483647).": "1,no_shift(a) 1,long",
+    f"{ONE} shift(1,0,a).": "1,no_shift(a)",
+    f"{ONE} shift(1,#inf,0).": "1,no_shift(#inf)",
+    f"{ONE} shift(1,2147483647,0).": "1,far",
+    f"{ONE} shift(1,0,2147483647).": "1,far",
+    # The sums are beyond clingo's numbers, and so negative.
+    f"{ONE} shift(1,2147483647,21474836).": "1,far",
+    f"{ONE} shift(1,-2147483647,21474836).": "1,far",
+    f"{ONE} shift(1,21474836,2147483647).": "1,far",
+    f"{ONE} shift(1,21474836,-2147483647).": "1,far",
+    f"{ONE} turn(2,0). view(2,0). shift(2,21474836,1).": "2,far",
+    f"{ONE} turn(2,0). view(2,0). shift(1,2147483647,0). shift(2,1,1).": "1,far",
+    f"{ONE} shift(0,21474836,0). shift(1,1,0).": "0,shift_at_start",
+    "slots(4). view(0,0). shift(1,1,1).": "1,no_step",
+    "slots(4). view(0,0). turn(2,0). view(2,0). shift(1,21474836,0). shift(2,1,0).": (
+        "1,no_turn 1,no_step"
+    ),
     "slots(2000000000). turn(2147483647,0).": (
         "-1,many_slots(2000000000) 0,no_view 1,no_turn 2147483647,no_view"
     ),
 }
+
+# Facts, constants, and the errors that input.lp shows: limits of the numbers that clingo has.
+PLAIN = "slots(4). view(0,0)."
+WITH_NUMBERS = [
+    (PLAIN, "tolerance=-2", "-1,negative_tolerance(-2)"),
+    (PLAIN, "tolerance=-1", "-1,negative_tolerance(-1)"),
+    (PLAIN, "tolerance=0", ""),
+    (PLAIN, "tolerance=3", ""),
+    (PLAIN, "drift=-1 stretch=-1", ""),
+    *[
+        (f"{ONE} {fact}", f"{name}={number}", errors)
+        for name, fact in (("drift", "shift(1,1,0)."), ("stretch", "length(1,1)."))
+        for number, errors in (
+            (-2, f"-1,negative_{name}(-2)"),
+            (-1, f"-1,negative_{name}(-1)"),
+            (0, ""),
+            (1, ""),
+            (100, ""),
+            (101, ""),
+            (102, ""),
+            (2147483647, ""),
+        )
+    ],
+    *[
+        (f"{ONE} {fact}({terms}).", f"{name}={number}", errors)
+        for name, fact, more, error in (
+            ("drift", "shift", ",0", "1,far"),
+            ("stretch", "length", "", "1,long"),
+        )
+        for number, most in ((100, 21474836), (101, 21262214), (200, 10737418), (2147483647, 1))
+        for far, errors in ((most, ""), (most + 1, error))
+        for terms in (f"1,{far}{more}",)
+    ],
+]

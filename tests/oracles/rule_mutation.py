@@ -17,7 +17,7 @@ import resource
 import signal
 import sys
 import tomllib
-from collections import Counter
+from collections import Counter, defaultdict
 from collections.abc import Callable, Container, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import groupby, product
@@ -291,6 +291,72 @@ def suffer(programs: Programs, whole: Programs, asked: list[Query]) -> tuple[str
     return "survived", -1
 
 
+WORD = re.compile(r"\b[a-z]\w*")
+
+
+def words(query: Query) -> frozenset[str]:
+    """The names in what a query gives and loads: predicates, constants, terms, files and parts."""
+    given = query.facts, *query.steps, *query.arguments, *query.files, *query.parts
+    return frozenset(WORD.findall(" ".join(given)))
+
+
+def concerned(rule: str, among: Sequence[str]) -> set[str]:
+    """The names in a rule, and in those of its file that define what its body asks for, or ask for
+    what it defines."""
+    found = set(WORD.findall(rule))
+    head, body = ends(rule)
+    for text in among:
+        defined, asked = ends(text)
+        if body & defined or head & asked:
+            found |= defined | asked
+    return found
+
+
+def ends(rule: str) -> tuple[set[str], set[str]]:
+    """The names in the head of a rule, and in its body."""
+    head, _, body = rule.partition(" :- ")
+    return set(WORD.findall(head)), set(WORD.findall(body))
+
+
+class Order:
+    """The order in which a mutant is asked: at first what settled it ``before``, then what settled
+    most mutants of the same rule, then what loads fewest files, then what gives most of what the
+    rule is about and most others do not give, then what settled most mutants of the same file, and
+    of all."""
+
+    def __init__(self, asked: Sequence[Query], before: Mapping[Mutant, str]) -> None:
+        self.names = [name_of(query) for query in asked]
+        self.words = [words(query) for query in asked]
+        often = Counter(word for several in self.words for word in several)
+        self.rare = {word for word, number in often.items() if 2 * number < len(asked)}
+        self.before = before
+        self.settlers: dict[tuple[str, ...], Counter[str]] = defaultdict(Counter)
+        for mutant, name in before.items():
+            self.settled(mutant, name)
+
+    def settled(self, mutant: Mutant, name: str) -> None:
+        """A query of this name settled the mutant."""
+        for among in (mutant.file, mutant.rule), (mutant.file,), ():
+            self.settlers[among][name] += 1
+
+    def of(self, mutant: Mutant, loading: dict[int, int], among: Sequence[str]) -> list[int]:
+        """These queries in that order, by number, each with how many files it loads; ``among`` is
+        what the file of the mutant states."""
+        topics = self.rare & concerned(mutant.rule, among)
+        of_rule = self.settlers[mutant.file, mutant.rule]
+        of_file, of_all = self.settlers[mutant.file,], self.settlers[()]
+
+        fewest = min(loading.values())
+
+        def worth(number: int) -> tuple[int, ...]:
+            name = self.names[number]
+            first = name == self.before.get(mutant), of_rule[name], loading[number] == fewest
+            told = len(topics & self.words[number])
+            return *first, told, of_file[name], of_all[name]
+
+        return sorted(loading, key=worth, reverse=True)
+
+
 def fates(
     folder: Path,
     chosen: list[Mutant],
@@ -302,11 +368,11 @@ def fates(
     quick: int | None = None,
 ) -> Iterator[Tried]:
     """The fate of each mutant, as they come, each in a process of its own; the ``proved`` ones come
-    last. The query that settled a mutant ``before`` comes first. A mutant that survives ENOUGH
-    queries, and is neither larger nor ``proved`` to be equivalent, is asked all the others. With
-    ``quick``, a mutant that survives that many queries is undecided."""
+    last. ``before`` has the name of the query that settled a mutant once. A mutant that survives
+    ENOUGH queries, and is neither larger nor ``proved`` to be equivalent, is asked all the others.
+    With ``quick``, a mutant that survives that many queries is undecided."""
     loaded = sets(folder, asked + measured)
-    names_of_queries = [name_of(query) for query in asked]
+    order = Order(asked, before)
     names = set().union(*loaded.values())
     texts = {file: list(map(str, statements(folder, file))) for file in names}
 
@@ -331,14 +397,18 @@ def fates(
                     continue
                 code = 1
                 try:
+                    loading = {
+                        number: len(loaded[query.files])
+                        for number, query in enumerate(asked)
+                        if mutant.file in loaded[query.files]
+                    }
+                    mine = order.of(mutant, loading, texts[mutant.file])
                     texts[mutant.file][mutant.number] = mutant.text
                     mutated = {
                         files: program(files)
                         for files, every in loaded.items()
                         if mutant.file in every
                     }
-                    mine = [n for n, query in enumerate(asked) if query.files in mutated]
-                    mine.sort(key=lambda n: names_of_queries[n] != before.get(mutant))
                     questions = [asked[number] for number in mine]
                     fate, number = suffer(mutated, whole, questions[: quick or ENOUGH])
                     if fate == "survived" and mutant.file in lean and not quick:
@@ -349,13 +419,13 @@ def fates(
                             if query.files in mutated
                         )
                         fate = "larger" if more > 0 else fate
-                    settled = names_of_queries[mine[number]] if number >= 0 else "-"
+                    settled = order.names[mine[number]] if number >= 0 else "-"
                     if fate == "survived" and quick:
                         fate, settled = UNDECIDED, str(quick)
                     elif fate == "survived" and mutant.key not in proved:
                         fate, number = suffer(mutated, whole, questions[ENOUGH:])
                         if number >= 0:
-                            settled = names_of_queries[mine[ENOUGH + number]]
+                            settled = order.names[mine[ENOUGH + number]]
                     os.write(told, f"{fate or 'wrong'} {settled}".encode())
                     code = 0
                 finally:
@@ -369,7 +439,10 @@ def fates(
                 raise InputError(f"{mutant.file}: a query has a wrong answer without a change")
             if code > 0:
                 raise RuntimeError(f"could not try {mutant}")
-            yield Tried(mutant, fate, query) if code == 0 else Tried(mutant, "endless", "-")
+            if code:
+                fate, query = "endless", "-"
+            order.settled(mutant, query)
+            yield Tried(mutant, fate, query)
     finally:
         for child, (_, result) in running.items():
             os.close(result)
@@ -422,11 +495,11 @@ def going_on(
     left, before = [], {}
     for mutant, key in keys.items():
         at, fate, query = known.get(key, ("", "", "-"))
+        before[mutant] = query
         if at == mark[mutant] and (fate != UNDECIDED or (quick and int(query) >= quick)):
             yield Tried(mutant, fate, query)
             continue
         left.append(mutant)
-        before[mutant] = query
     path.parent.mkdir(parents=True, exist_ok=True)
     with path.open("a") as file:
         for one in trials(left, before):

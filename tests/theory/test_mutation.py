@@ -4,6 +4,7 @@ import os
 import subprocess
 import sys
 from collections import Counter
+from dataclasses import replace
 
 import pytest
 from conftest import ENCODINGS, ROOT
@@ -152,13 +153,14 @@ def test_what_was_tried_is_not_tried_again(mutated, tmp_path, monkeypatch):
 
 
 def test_the_query_that_settled_a_mutant_comes_first_the_next_time(mutated, tmp_path, monkeypatch):
-    """Where a query came to the others."""
+    """And one that settled others comes before one that settled nothing."""
     other = Query(("counter",), "", shown("n(0)", "n(1)", "n(2)"), ("-c", "limit=2"))
     known = tmp_path / "known.txt"
     mutated(listing(EQUIVALENT), "--known", str(known))
     settled = Counter(line.split()[-1] for line in known.read_text().splitlines())
     first, second = map(mutate.name_of, (ASKED[0], other))
     assert settled == {first: 9, "-": 2}
+    known.write_text(known.read_text().replace(first, second, 1))
     log, suffer = tmp_path / "log", mutate.suffer
 
     def note(programs, whole, asked):
@@ -169,7 +171,22 @@ def test_the_query_that_settled_a_mutant_comes_first_the_next_time(mutated, tmp_
     monkeypatch.setattr(mutate, "suffer", note)
     monkeypatch.setitem(globals(), "ASKED", [other, ASKED[0]])
     mutated(listing(EQUIVALENT), "--known", str(known))
-    assert Counter(log.read_text().split()) == {first: 9, second: 2}
+    assert Counter(log.read_text().split()) == {first: 10, second: 1}
+
+
+def test_a_query_about_what_a_rule_is_about_comes_first():
+    """After those that settled a mutant of the same rule, and before those of the same file."""
+    rule, of_rule, of_file = "a(T) :- shifted(T).", Query(("f",), "w.", {}), Query(("f",), "v.", {})
+    among = ["shifted(T) :- shift(T,X).", rule, "b(T) :- length(T,D)."]
+    asked = [Query(("f",), f"view({n}).", {}) for n in range(9)]
+    asked += [of_file, Query(("f",), "length(1,2).", {}), Query(("f",), "shift(1,2).", {}), of_rule]
+    mutant = mutate.Mutant("f", rule, "drop", "drop", 1, "a(T).")
+    others = replace(mutant, change="remove"), replace(mutant, rule=among[2])
+    settled = mutate.name_of(of_rule), mutate.name_of(of_file)
+    order = mutate.Order(asked, dict(zip(others, settled, strict=True)))
+    loading = dict.fromkeys(range(len(asked)), 2)
+    assert order.of(mutant, loading, among) == [12, 11, 9, *range(9), 10]
+    assert order.of(mutant, loading | {5: 1}, among)[:3] == [12, 5, 11]
 
 
 def test_quickly_a_survivor_of_the_first_queries_is_undecided(mutated, tmp_path, monkeypatch):
