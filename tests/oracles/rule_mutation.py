@@ -291,11 +291,12 @@ def suffer(programs: Programs, whole: Programs, asked: list[Query]) -> tuple[str
     return "survived", -1
 
 
-WORD = re.compile(r"\b[a-z]\w*")
+WORD = re.compile(r"\b[a-z0-9]\w*")
 
 
 def words(query: Query) -> frozenset[str]:
-    """The names in what a query gives and loads: predicates, constants, terms, files and parts."""
+    """The names and numbers in what a query gives and loads: predicates, constants, terms, files
+    and parts."""
     given = query.facts, *query.steps, *query.arguments, *query.files, *query.parts
     return frozenset(WORD.findall(" ".join(given)))
 
@@ -321,14 +322,12 @@ def ends(rule: str) -> tuple[set[str], set[str]]:
 class Order:
     """The order in which a mutant is asked: at first what settled it ``before``, then what settled
     most mutants of the same rule, then what loads fewest files, then what gives most of what the
-    rule is about and most others do not give, then what settled most mutants of the same file, and
-    of all."""
+    rule is about and few others give, then what settled most mutants of the same file, and of all.
+    """
 
     def __init__(self, asked: Sequence[Query], before: Mapping[Mutant, str]) -> None:
         self.names = [name_of(query) for query in asked]
         self.words = [words(query) for query in asked]
-        often = Counter(word for several in self.words for word in several)
-        self.rare = {word for word, number in often.items() if 2 * number < len(asked)}
         self.before = before
         self.settlers: dict[tuple[str, ...], Counter[str]] = defaultdict(Counter)
         for mutant, name in before.items():
@@ -342,16 +341,20 @@ class Order:
     def of(self, mutant: Mutant, loading: dict[int, int], among: Sequence[str]) -> list[int]:
         """These queries in that order, by number, each with how many files it loads; ``among`` is
         what the file of the mutant states."""
-        topics = self.rare & concerned(mutant.rule, among)
+        topics = concerned(mutant.rule, among)
+        often = Counter(word for number in loading for word in topics & self.words[number])
+        sign = (
+            -1 if mutant.rule.startswith("#defined") else 1
+        )  # it is for those that do not give it
         of_rule = self.settlers[mutant.file, mutant.rule]
         of_file, of_all = self.settlers[mutant.file,], self.settlers[()]
 
         fewest = min(loading.values())
 
-        def worth(number: int) -> tuple[int, ...]:
+        def worth(number: int) -> tuple[float, ...]:
             name = self.names[number]
             first = name == self.before.get(mutant), of_rule[name], loading[number] == fewest
-            told = len(topics & self.words[number])
+            told = sign * sum(1 / often[word] for word in topics & self.words[number])
             return *first, told, of_file[name], of_all[name]
 
         return sorted(loading, key=worth, reverse=True)

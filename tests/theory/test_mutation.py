@@ -191,7 +191,7 @@ def test_a_query_about_what_a_rule_is_about_comes_first():
 
 def test_quickly_a_survivor_of_the_first_queries_is_undecided(mutated, tmp_path, monkeypatch):
     """It is tried again as soon as it may be asked more."""
-    more = Query(("counter",), "n(5).", shown("n(0)", "n(1)", "n(5)"), ("-c", "limit=1"))
+    more = Query(("counter",), "#const other=5.", shown("n(0)", "n(1)"), ("-c", "limit=1"))
     monkeypatch.setitem(globals(), "ASKED", [*ASKED, more])
     known = tmp_path / "known.txt"
     status, out, _, report = mutated("equivalent = []", "--quick", "1", "--known", str(known))
