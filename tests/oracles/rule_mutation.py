@@ -295,17 +295,19 @@ WORD = re.compile(r"\b[a-z0-9]\w*")
 
 
 def words(query: Query) -> frozenset[str]:
-    """The names and numbers in what a query gives and loads: predicates, constants, terms, files
-    and parts."""
-    given = query.facts, *query.steps, *query.arguments, *query.files, *query.parts
-    return frozenset(WORD.findall(" ".join(given)))
+    """The names and numbers in what a query gives and loads: predicates, constants, terms and
+    files; and the program parts that are grounded with its steps."""
+    given = query.facts, *query.steps, *query.arguments, *query.files
+    return frozenset(WORD.findall(" ".join(given))) | {f"#program {part}" for part in query.parts}
 
 
-def concerned(rule: str, among: Sequence[str]) -> set[str]:
-    """The names in a rule, and in those of its file that define what its body asks for, or ask for
-    what it defines."""
-    found = set(WORD.findall(rule))
-    head, body = ends(rule)
+def concerned(mutant: Mutant, among: Sequence[str]) -> set[str]:
+    """The names in the rule of a mutant, and in those statements of its file that define what its
+    body asks for, or ask for what it defines; and the program part of the rule."""
+    found = set(WORD.findall(mutant.rule))
+    head, body = ends(mutant.rule)
+    parts = [text for text in among[: mutant.number] if text.startswith("#program")]
+    found |= {part.partition("(")[0] for part in parts[-1:]}
     for text in among:
         defined, asked = ends(text)
         if body & defined or head & asked:
@@ -341,14 +343,12 @@ class Order:
     def of(self, mutant: Mutant, loading: dict[int, int], among: Sequence[str]) -> list[int]:
         """These queries in that order, by number, each with how many files it loads; ``among`` is
         what the file of the mutant states."""
-        topics = concerned(mutant.rule, among)
+        topics = concerned(mutant, among)
         often = Counter(word for number in loading for word in topics & self.words[number])
-        sign = (
-            -1 if mutant.rule.startswith("#defined") else 1
-        )  # it is for those that do not give it
+        # A predicate is said to be defined for those that do not give it.
+        sign = -1 if mutant.rule.startswith("#defined") else 1
         of_rule = self.settlers[mutant.file, mutant.rule]
         of_file, of_all = self.settlers[mutant.file,], self.settlers[()]
-
         fewest = min(loading.values())
 
         def worth(number: int) -> tuple[float, ...]:
