@@ -377,6 +377,9 @@ KNOWN = {
     "length, round": replace(ROUND, lengths=(100, 50, 40, 30, 100)),
     "length, unlike": replace(ROUND, lengths=(100, 50, 40, 30, 89)),
     "stretch": replace(THERE, lengths=(100, 89, None), stretch=11),
+    "odometry, two gaps": replace(
+        seen("0 2", *["0: 0 2"] * 4), shifts=((10, 0), None, None, (0, 0))
+    ),
     "same": replace(ROUND, same=[(0, 4)]),
     "same, again": replace(ROUND, same=[(5, 1), (2, 0)]),
     "apart": replace(ROUND, apart=[(0, 4)]),
@@ -996,16 +999,15 @@ def begun(facts: str, experience: Experience, pairs: phase_answers.Pairs, horizo
 
 
 def sizes() -> list[Query]:
-    """What the size of the encodings is taken by: each experience with all the parts, one in
-    four where rules may be waived, one in five of what is asked of the phases, one in seven of
-    what is asked step by step, and a large exploration in which it is known which visits are new.
-    """
+    """What the size of the encodings is taken by: every other named experience with all the parts,
+    one in eight where rules may be waived, some of what is asked of the phases and step by step,
+    and a large exploration in which it is known which visits are new."""
     files = ("topomap", "bound", "query", *PARTS, "genus", "minimal")
     many = ("-c", "places=99")
     waived = ("topomap", "explain", "perpendicular")
     named = (EXPERIENCES | WORLDS).values()
-    whole = [Query(files, seen.facts(), frozenset(), many) for seen in named]
-    whole += [Query(waived, seen.facts(), frozenset()) for seen in [*named][::4]]
+    whole = [Query(files, seen.facts(), frozenset(), many) for seen in [*named][::2]]
+    whole += [Query(waived, seen.facts(), frozenset()) for seen in [*named][::8]]
     phases = [query for query in queries() if query.files[0].startswith("phases/")]
     made = grid(5, 5)
     route = [EAST, WEST] * 2 + snake(made)
@@ -1015,7 +1017,7 @@ def sizes() -> list[Query]:
     pairs = "".join(f"{atom}. " for atom in phase_answers.Pairs(experience).shown())
     large = experience.facts() + "phases. " + pairs + known
     plane = Query(("phases/topomap", "planar"), large, frozenset())
-    return [*whole, *phases[::5], plane, *[*following()][::7]]
+    return [*whole, *phases[::40], plane, *[*following()][::20]]
 
 
 def check() -> Iterator[Query]:
@@ -1036,6 +1038,19 @@ def check_bent() -> Iterator[Query]:
 
 def borders() -> Iterator[Query]:
     """Maps of what is seen, where more is known: what the checker says of them."""
+    wide = ("-c", f"tolerance={LARGEST}")
+    for experience in BENT.values():
+        if experience.tolerance and not experience.compass:
+            any_bearings = replace(experience, tolerance=experience.slots)
+            found = frozenset(((), ats(at)) for at in Truth(any_bearings).final)
+            facts = experience.facts()
+            for files in (("topomap",), ("paper/topomap", "paper/beyond/tolerance")):
+                if "straight" not in facts:
+                    yield Query(files, facts, found, wide)
+            for at in Truth(any_bearings).final:
+                told = [(step, *dstate) for step, dstate in enumerate(at)]
+                for query in judged(any_bearings, told, ()):
+                    yield replace(query, arguments=wide)
     for experience in [*KNOWN.values(), *LOGS.values(), *BENT.values()]:
         less = replace(experience, compass=(), shifts=(), lengths=(), same=(), apart=(), things=())
         less = replace(less, straight=(), tolerance=2 * less.tolerance)
@@ -1512,6 +1527,13 @@ def alone() -> Iterator[Query]:
     sides = f"{BENT['all opposite'].facts()} #const with_sides = 0."
     for part in ("paper/boundary", "paper/beyond/exceptions"):
         yield Query(("paper/topomap", "paper/beyond/straight", part), sides, frozenset())
+    yield Query(("no_path_axiom",), defined, frozenset())
+    yield Query(("paper/perpendicular",), defined, frozenset(), ("-c", "with_path_axiom=0"))
+    parts = ("paper/topomap", "paper/perpendicular", "no_path_axiom")
+    yield Query(parts, CORRIDOR.facts(), frozenset(), ("-c", "with_path_axiom=0"))
+    facts, how = BENT["one slot off"].facts(), constants(BENT["one slot off"])
+    how = (*how, "-c", "noise_with_tolerance=0", "--opt-mode=ignore")
+    yield Query(("topomap", "noise"), facts, frozenset(), how)
     # A file for facts that are not given changes nothing.
     for name in ("ahead", "lasso"):
         found = frozenset(((), ats(at)) for at in Truth(EXPERIENCES[name]).final)

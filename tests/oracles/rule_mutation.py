@@ -384,7 +384,7 @@ def fates(
 
     whole = {files: program(files) for files in loaded}
     lean = {file for query in measured for file in loaded[query.files]}
-    some = not quick and any(mutant.file in lean for mutant in chosen)
+    some = any(mutant.file in lean for mutant in chosen)
     least = [(query, rules(whole[query.files], query)) for query in measured if some]
     waiting = chosen[::-1]
     waiting.sort(key=lambda mutant: mutant.key not in proved)
@@ -414,7 +414,7 @@ def fates(
                     }
                     questions = [asked[number] for number in mine]
                     fate, number = suffer(mutated, whole, questions[: quick or ENOUGH])
-                    if fate == "survived" and mutant.file in lean and not quick:
+                    if fate == "survived" and mutant.file in lean:
                         signal.setitimer(signal.ITIMER_PROF, SECONDS * len(measured))
                         more = sum(
                             rules(mutated[query.files], query) - number
