@@ -411,6 +411,7 @@ LOGS = {
     "a log": TWO,
     "a log from a corridor": rested(seen("0 2", "0: 0 2", "2: 0 2", "2: 0"), 2, "starts"),
     "a log of one place": Experience(4, [[0], [0], [0]], [0, None], starts=[2]),
+    "two dead ends": Experience(4, [[0], [0]], [None], starts=[1]),
     "two places": Experience(4, [[0, 1], [0, 1]], [None], starts=[1]),
     "a log with odometry": replace(TWO, shifts=((5, 0), (1, 1), (0, 5))),
     "coin and rope": Experience(
@@ -496,6 +497,9 @@ BENT = {
         straight=[[(0, 1)], [(0, 2)], [], [(0, 4)], [(0, 2)], []],
     ),
 }
+
+
+UNTRIED = seen("0 1", "1: 0")  # closed but for the first gateway
 
 
 def places_of(name):
@@ -958,7 +962,7 @@ def lines(facts: str, experience: Experience, truth: Truth, found: list) -> Quer
 
 def squares() -> Iterator[Query]:
     """More of that."""
-    for experience in SQUARES:
+    for experience in [*SQUARES, UNTRIED]:
         facts = experience.facts() + "phases. "
         facts += "".join(f"{atom}. " for atom in phase_answers.Pairs(experience).shown())
         yield lines(facts, experience, Truth(experience), [])
@@ -1211,15 +1215,19 @@ def further() -> Iterator[Query]:
 
 
 def further_bent() -> Iterator[Query]:
-    """The same of maps in which pairs of gateways are given, and in which there is a compass."""
-    for seed in range(70):
+    """The same of maps in which pairs of gateways are given, in which there is a compass, and in
+    which markers lie that have names."""
+    for seed in range(90):
         draw = random.Random(f"further bent {seed}")
         if seed % 3:
             _, among = walks.scattered(draw, 3)
             among = [numbered(draw, one, False) for one in walks.bent(draw, among)]
             facts = bare(among)
         else:
-            experience, found = walks.drawn_bent(draw, 3, 6)
+            experience, found = walks.drawn_bent(draw, 3, 6) if seed < 70 else lying(draw)
+            if seed % 2 and experience.compass:  # not at each visit
+                known = [slot if draw.random() < 0.8 else None for slot in experience.compass]
+                experience = replace(experience, compass=known)
             facts = experience.facts()
             for number, at in enumerate(found):
                 facts += "".join(f"map({number},{t},{p},{s}). " for t, (p, s) in enumerate(at))
@@ -1249,6 +1257,16 @@ def signed(draw: random.Random) -> tuple[Experience, list]:
         experience, found = walks.drawn(draw, 3, 8)
         if any(experience.landmarks) and len(found) > 1:
             return experience, found
+
+
+def lying(draw: random.Random) -> tuple[Experience, list]:
+    """Hypotheses of an experience with markers that have names, and were taken up now and then."""
+    while True:
+        experience = logs(draw, 7)
+        found = sorted(Truth(experience).final)
+        picks = any(kind == "pick" for kind, *_ in experience.things)
+        if len(found) > 1 and experience.things and (picks or draw.random() < 0.2):
+            return experience, draw.sample(found, min(3, len(found)))
 
 
 def rings() -> Iterator[tuple[random.Random, list[Standing]]]:
@@ -1424,6 +1442,10 @@ def followed(number: int, experience: Experience, *loaded: str) -> Iterator[Quer
     ]
     few = () if bound is None else ("-c", f"places={bound}")
     yield asked(found, parts=parts, arguments=(*ignore, *few))
+    if experience.starts:
+        closed = [((), atoms(at)) for at in truth.having("closed")]
+        ends = (*steps, f":- not closed({names[-1]}).")
+        yield asked(closed, arguments=ignore, steps=ends)
     costs = {at: h.cost() for at, h in every.items()}
     if loaded and number % 3 < 2:  # what a map costs is not stated without the path axiom
         closed = [((), atoms(at)) for at in truth.having("closed")]
@@ -1450,16 +1472,20 @@ def followed(number: int, experience: Experience, *loaded: str) -> Iterator[Quer
 def astray(draw, experience):
     """The same experience with steps that lead elsewhere and are taken back: the numbers of
     its own steps, and all the steps."""
-    names, steps, last = [], [], -1
+    names, steps, away, last = [], [], [], -1
     for step in range(experience.steps + 1):
         if step and draw.random() < 0.4:
             turn = draw.choice(sorted(experience.views[step - 1]))
             last += 1
+            away.append(last)
             told = "".join(f" {name}({last})." for name in MARKER if draw.random() < 0.3)
             steps.append(f"turn({last},{turn}). after({last},{names[-1]}). view({last},0).{told}")
             steps.append(str(last))
         last += 1
         facts = experience.facts_of(step, last)
+        if away and draw.random() < 0.2:  # this says nothing about a step that was not taken back
+            one, other = draw.sample([draw.choice(away), last], 2)
+            facts.append(f"{draw.choice(['same', 'apart'])}({one},{other}).")
         for name in ("same", "apart"):
             pairs = [pair for pair in getattr(experience, name) if pair[1] == step]
             facts += [f"{name}({last},{names[one]})." for one, _ in sorted(pairs)]

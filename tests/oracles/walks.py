@@ -15,7 +15,14 @@ def standing(experience, at, marker=None):
     north = {}
     if experience.compass and None not in experience.compass:
         north = {place: experience.compass[place] for place, _ in at}
-    return Standing(experience.map_of(at), at[-1], marker, north)
+    world = experience.map_of(at)
+    signs = dict(world.landmarks)
+    for kind, step, name in experience.things:
+        taken = {other for mark, other, one in experience.things if (mark, one) == ("pick", name)}
+        if kind == "drop" and not any(other > step for other in taken):
+            place = at[step][0]
+            signs[place] = signs.get(place, frozenset()) | {f"marker({name})"}
+    return Standing(replace(world, landmarks=signs), at[-1], marker, north)
 
 
 def drawn(draw, most=4, steps=8):
