@@ -39,28 +39,28 @@ LISTED = ROOT / "tests/oracles/equivalent.toml"
 REPORT = ROOT / "docs/mutation.md"
 KINDS = ("remove", "drop", "negate", "shift")
 FATES = ("survived", "killed", "refused", "endless", "larger")
-UNDECIDED = "undecided"  # survived the first queries, and was asked no more of them
 SECONDS = 5  # of the processor, for one query: the encodings take milliseconds
 BYTES = 2 << 30
-ENOUGH = 1500  # queries, in an order drawn at random, for a mutant that is proved to be equivalent
+QUERIES = 100  # for one mutant at most: that many settle nearly all that any query settles
 HEAD = """# Rule mutation
 
 Written by `make mutate`, with clingo {clingo} and Python {python}.
 
 A mutant is an encoding changed in one place: a statement removed; a literal of a body or of a
 condition dropped; one negated, or a comparison turned into its complement; a number made one
-greater or one less. Mutants that read the same are one. Each is asked the queries of
-`tests/oracles/known_answers.py` that load it, whose answers are known without the encodings: at
-first {enough:,} of them, drawn at random. It is *killed* when one gives other answers (other
-models, shown atoms or costs, or a model twice), *refused* when clingo has an error or a message
-for it, *endless* when a query takes more than {seconds} seconds of the processor or {memory} MiB
-of memory. (If the encoding without the change gives other answers too, the run ends with an
-error.) When these answers are right, a mutant of an encoding whose worth is in its size, too, is
-*larger* if it grounds to more rules, over all named experiences with all the parts and some of
-what `phases/` and `online/` are asked. Another one is *equivalent* if
-`tests/oracles/equivalent.toml` says why. Any other one is asked all the queries, and has
-*survived* if all answers are right. Comments, `#include` and `#heuristic`, which is but an order
-of the search, are not mutated.
+greater or one less. Mutants that read the same are one. Each is asked at most {most:,} of the
+{all:,} queries of `tests/oracles/known_answers.py`, of those that load it, whose answers are known
+without the encodings: first those that settled most mutants of the same rule, then those that give
+most of what the rule is about, then those that settled most others. It is *killed* when one gives
+other answers (other models, shown atoms or costs, or a model twice), *refused* when clingo has an
+error or a message for it, *endless* when a query takes more than {seconds} seconds of the processor
+or {memory} MiB of memory. (If the encoding without the change gives other answers too, the run ends
+with an error.) When these answers are right, a mutant of an encoding whose worth is in its size,
+too, is *larger* if it grounds to more rules, over some of the named experiences with all the parts
+and some of what `phases/` and `online/` are asked. Another one is *equivalent* if
+`tests/oracles/equivalent.toml` says why, and else it has *survived*: another query may kill it, or
+a proof is missing. Comments, `#include` and `#heuristic`, which is but an order of the search, are
+not mutated.
 """
 COMPLEMENT = {
     ast.ComparisonOperator.Equal: ast.ComparisonOperator.NotEqual,
@@ -368,12 +368,11 @@ def fates(
     jobs: int,
     proved: Container[Key] = (),
     before: Mapping[Mutant, str] = MappingProxyType({}),
-    quick: int | None = None,
+    most: int = QUERIES,
 ) -> Iterator[Tried]:
     """The fate of each mutant, as they come, each in a process of its own; the ``proved`` ones come
-    last. ``before`` has the name of the query that settled a mutant once. A mutant that survives
-    ENOUGH queries, and is neither larger nor ``proved`` to be equivalent, is asked all the others.
-    With ``quick``, a mutant that survives that many queries is undecided."""
+    last, so that they find out most. ``before`` has the name of the query that settled a mutant
+    once. A mutant that survives ``most`` queries, and is not larger, has survived."""
     loaded = sets(folder, asked + measured)
     order = Order(asked, before)
     names = set().union(*loaded.values())
@@ -412,8 +411,8 @@ def fates(
                         for files, every in loaded.items()
                         if mutant.file in every
                     }
-                    questions = [asked[number] for number in mine]
-                    fate, number = suffer(mutated, whole, questions[: quick or ENOUGH])
+                    questions = [asked[number] for number in mine[:most]]
+                    fate, number = suffer(mutated, whole, questions)
                     if fate == "survived" and mutant.file in lean:
                         signal.setitimer(signal.ITIMER_PROF, SECONDS * len(measured))
                         more = sum(
@@ -422,13 +421,7 @@ def fates(
                             if query.files in mutated
                         )
                         fate = "larger" if more > 0 else fate
-                    settled = order.names[mine[number]] if number >= 0 else "-"
-                    if fate == "survived" and quick:
-                        fate, settled = UNDECIDED, str(quick)
-                    elif fate == "survived" and mutant.key not in proved:
-                        fate, number = suffer(mutated, whole, questions[ENOUGH:])
-                        if number >= 0:
-                            settled = order.names[mine[ENOUGH + number]]
+                    settled = order.names[mine[number]] if number >= 0 else str(most)
                     os.write(told, f"{fate or 'wrong'} {settled}".encode())
                     code = 0
                 finally:
@@ -479,12 +472,12 @@ def marks(
 
 
 def going_on(
-    path: Path, mark: dict[Mutant, str], trials: Trials, quick: int | None = None
+    path: Path, mark: dict[Mutant, str], trials: Trials, most: int = QUERIES
 ) -> Iterator[Tried]:
     """The fates that a file knows already, then those of the others, which are added to it.
 
     A line of the file has a digest of the rule and the change of a mutant, its mark, its fate
-    and the query that settled it; the last line of a mutant counts. If its mark is another one by
+    and the query that settled it, or how many it was asked; the last line of a mutant counts. If its mark is another one by
     now, that query is asked first: as a rule it settles the mutant again."""
     known = {}
     if path.exists():
@@ -499,7 +492,7 @@ def going_on(
     for mutant, key in keys.items():
         at, fate, query = known.get(key, ("", "", "-"))
         before[mutant] = query
-        if at == mark[mutant] and (fate != UNDECIDED or (quick and int(query) >= quick)):
+        if at == mark[mutant] and (fate != "survived" or int(query) >= most):
             yield Tried(mutant, fate, query)
             continue
         left.append(mutant)
@@ -529,8 +522,8 @@ def listed(path: Path) -> dict[Key, str]:
     return found
 
 
-def report(fate: dict[Mutant, str], reasons: dict[Key, str]) -> str:
-    """The text of docs/mutation.md."""
+def report(fate: dict[Mutant, str], reasons: dict[Key, str], most: int, every: int) -> str:
+    """The text of docs/mutation.md, of mutants that were asked ``most`` queries out of so many."""
 
     def row(name: str, group: list[Mutant]) -> str:
         kinds = Counter(mutant.kind for mutant in group)
@@ -550,7 +543,8 @@ def report(fate: dict[Mutant, str], reasons: dict[Key, str]) -> str:
             python=platform.python_version(),
             seconds=SECONDS,
             memory=BYTES >> 20,
-            enough=ENOUGH,
+            most=most,
+            all=every,
         ),
         f"| encoding | {' | '.join((*KINDS, 'all', *FATES, 'equivalent'))} |",
         "|---|" + "--:|" * (len(KINDS) + len(FATES) + 2),
@@ -577,9 +571,9 @@ def count(text: str) -> int:
 def faults(fate: dict[Mutant, str], reasons: dict[Key, str], known: set[Key]) -> Iterator[str]:
     """What is wrong with the fates, or with the list of the equivalent mutants."""
     for mutant, end in fate.items():
-        if end in ("survived", UNDECIDED) and mutant.key not in reasons:
-            yield f"{'survives' if end == 'survived' else end}, not listed: {mutant}"
-        if end not in ("survived", UNDECIDED) and mutant.key in reasons:
+        if end == "survived" and mutant.key not in reasons:
+            yield f"survives, not listed: {mutant}"
+        if end != "survived" and mutant.key in reasons:
             yield f"listed, but {end}: {mutant}"
     for key in reasons:
         if key not in known:
@@ -600,10 +594,11 @@ def main(
     parser.add_argument("--report", type=Path, default=REPORT, help="the file to write")
     parser.add_argument("--known", type=Path, help="a file that keeps what was tried, to go on")
     parser.add_argument(
-        "--quick",
+        "--queries",
         metavar="N",
         type=count,
-        help="ask at most N queries, and list the mutants that are undecided then; no report",
+        default=QUERIES,
+        help="ask each mutant at most N queries (default: %(default)s)",
     )
     parser.add_argument("files", nargs="*", help="try only these, as theory/links; no report")
     options = parser.parse_args(argv)
@@ -623,26 +618,25 @@ def main(
             chosen = random.Random(options.seed).sample(chosen, min(options.sample, len(chosen)))
 
         def trials(left: list[Mutant], before: dict[Mutant, str]) -> Iterator[Tried]:
-            how = options.jobs, reasons, before, options.quick
+            how = options.jobs, reasons, before, options.queries
             return fates(folder, left, asked(), measured(), *how)
 
         found = trials(chosen, {})
         if options.known:
             mark = marks(folder, chosen, asked(), measured())
-            found = going_on(options.known, mark, trials, options.quick)
+            found = going_on(options.known, mark, trials, options.queries)
         ends = {one.mutant: one.fate for one in tqdm(found, "mutants", len(chosen), disable=None)}
         fate = {mutant: ends[mutant] for mutant in chosen}
-        if not (options.files or options.sample or options.quick):
+        if not (options.files or options.sample):
             with output(str(options.report)) as text:
-                text.write(report(fate, reasons))
+                text.write(report(fate, reasons, options.queries, len(asked())))
     except InputError as error:
         print(f"mutate: {error}", file=sys.stderr)
         return 2
     except KeyboardInterrupt:
         return 130
     numbers = Counter(fate.values())
-    shown = (*FATES, UNDECIDED) if options.quick else FATES
-    print(f"{len(fate)} mutants:", ", ".join(f"{numbers[end]} {end}" for end in shown))
+    print(f"{len(fate)} mutants:", ", ".join(f"{numbers[end]} {end}" for end in FATES))
     wrong = list(faults(fate, reasons, {mutant.key for mutant in everyone}))
     for fault in wrong:
         print(fault)
