@@ -477,8 +477,9 @@ def going_on(
     """The fates that a file knows already, then those of the others, which are added to it.
 
     A line of the file has a digest of the rule and the change of a mutant, its mark, its fate
-    and the query that settled it, or how many it was asked; the last line of a mutant counts. If its mark is another one by
-    now, that query is asked first: as a rule it settles the mutant again."""
+    and the query that settled it, or how many it was asked; the last line of a mutant counts. If
+    its mark is another one by now, that query is asked first: as a rule it settles the mutant
+    again."""
     known = {}
     if path.exists():
         for line in path.read_text().splitlines():
