@@ -325,7 +325,7 @@ class Order:
     """The order in which a mutant is asked: at first what settled it ``before``, then what settled
     most mutants of the same rule, then what loads fewest files, then what gives most of what the
     rule is about and few others give, then what settled most mutants of the same file, and of all.
-    """
+    Every other query is drawn at random, as those that come together are much alike."""
 
     def __init__(self, asked: Sequence[Query], before: Mapping[Mutant, str]) -> None:
         self.names = [name_of(query) for query in asked]
@@ -341,8 +341,8 @@ class Order:
             self.settlers[among][name] += 1
 
     def of(self, mutant: Mutant, loading: dict[int, int], among: Sequence[str]) -> list[int]:
-        """These queries in that order, by number, each with how many files it loads; ``among`` is
-        what the file of the mutant states."""
+        """These queries in that order, by number, each with how many files it loads, given in an
+        order at random; ``among`` is what the file of the mutant states."""
         topics = concerned(mutant, among)
         often = Counter(word for number in loading for word in topics & self.words[number])
         # A predicate is said to be defined for those that do not give it.
@@ -357,7 +357,10 @@ class Order:
             told = sign * sum(1 / often[word] for word in topics & self.words[number])
             return *first, told, of_file[name], of_all[name]
 
-        return sorted(loading, key=worth, reverse=True)
+        ranked = sorted(loading, key=worth, reverse=True)
+        return list(
+            dict.fromkeys(number for pair in zip(ranked, loading, strict=True) for number in pair)
+        )
 
 
 def fates(

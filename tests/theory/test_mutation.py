@@ -186,8 +186,9 @@ def test_a_query_about_what_a_rule_is_about_comes_first():
     settled = mutate.name_of(of_rule), mutate.name_of(of_file)
     order = mutate.Order(asked, dict(zip(others, settled, strict=True)))
     loading = dict.fromkeys(range(len(asked)), 2)
-    assert order.of(mutant, loading, among) == [12, 11, 9, *range(9), 10]
-    assert order.of(mutant, loading | {5: 1}, among)[:3] == [12, 5, 11]
+    assert order.of(mutant, loading, among)[:5:2] == [12, 11, 9]
+    assert sorted(order.of(mutant, loading, among)) == [*loading]
+    assert order.of(mutant, loading | {5: 1}, among)[:5:2] == [12, 5, 11]
 
 
 def test_a_survivor_is_asked_more_as_soon_as_it_may_be(mutated, tmp_path, monkeypatch):
