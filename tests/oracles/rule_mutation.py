@@ -56,8 +56,9 @@ other answers (other models, shown atoms or costs, or a model twice), *refused* 
 error or a message for it, *endless* when a query takes more than {seconds} seconds of the processor
 or {memory} MiB of memory. (If the encoding without the change gives other answers too, the run ends
 with an error.) When these answers are right, a mutant of an encoding whose worth is in its size,
-too, is *larger* if it grounds to more rules, over some of the named experiences with all the parts
-and some of what `phases/` and `online/` are asked. Another one is *equivalent* if
+too, is *larger* if it grounds to more rules at the first of {sizes} queries at which the number is
+another one: some of the named experiences with all the parts, and some of what `phases/` and
+`online/` are asked. Another one is *equivalent* if
 `tests/oracles/equivalent.toml` says why, and else it has *survived*: another query may kill it, or
 a proof is missing. Comments, `#include` and `#heuristic`, which is but an order of the search, are
 not mutated.
@@ -418,12 +419,13 @@ def fates(
                     fate, number = suffer(mutated, whole, questions)
                     if fate == "survived" and mutant.file in lean:
                         signal.setitimer(signal.ITIMER_PROF, SECONDS * len(measured))
-                        more = sum(
+                        differences = (
                             rules(mutated[query.files], query) - number
                             for query, number in least
                             if query.files in mutated
                         )
-                        fate = "larger" if more > 0 else fate
+                        first = next((more for more in differences if more), 0)
+                        fate = "larger" if first > 0 else fate
                     settled = order.names[mine[number]] if number >= 0 else str(most)
                     os.write(told, f"{fate or 'wrong'} {settled}".encode())
                     code = 0
@@ -526,7 +528,9 @@ def listed(path: Path) -> dict[Key, str]:
     return found
 
 
-def report(fate: dict[Mutant, str], reasons: dict[Key, str], most: int, every: int) -> str:
+def report(
+    fate: dict[Mutant, str], reasons: dict[Key, str], most: int, every: int, sizes_asked: int
+) -> str:
     """The text of docs/mutation.md, of mutants that were asked ``most`` queries out of so many."""
 
     def row(name: str, group: list[Mutant]) -> str:
@@ -549,6 +553,7 @@ def report(fate: dict[Mutant, str], reasons: dict[Key, str], most: int, every: i
             memory=BYTES >> 20,
             most=most,
             all=every,
+            sizes=sizes_asked,
         ),
         f"| encoding | {' | '.join((*KINDS, 'all', *FATES, 'equivalent'))} |",
         "|---|" + "--:|" * (len(KINDS) + len(FATES) + 2),
@@ -633,7 +638,7 @@ def main(
         fate = {mutant: ends[mutant] for mutant in chosen}
         if not (options.files or options.sample):
             with output(str(options.report)) as text:
-                text.write(report(fate, reasons, options.queries, len(asked())))
+                text.write(report(fate, reasons, options.queries, len(asked()), len(measured())))
     except InputError as error:
         print(f"mutate: {error}", file=sys.stderr)
         return 2
