@@ -1479,7 +1479,15 @@ def astray(draw, experience):
             last += 1
             away.append(last)
             told = "".join(f" {name}({last})." for name in MARKER if draw.random() < 0.3)
-            steps.append(f"turn({last},{turn}). after({last},{names[-1]}). view({last},0).{told}")
+            told += f" same({draw.choice(names)},{last})." * (draw.random() < 0.2)
+            if draw.random() < 0.2:
+                seen_again = experience.views[step - 1]
+                told += f" look({last})." + "".join(f" view({last},{slot})." for slot in seen_again)
+            else:
+                told += f" turn({last},{turn}). view({last},0)."
+                told += f" length({last},{draw.randint(1, 99)})." * bool(experience.lengths)
+                told += f" shift({last},{draw.randint(-9, 9)},0)." * bool(experience.shifts)
+            steps.append(f"after({last},{names[-1]}).{told}")
             steps.append(str(last))
         last += 1
         facts = experience.facts_of(step, last)
