@@ -1064,6 +1064,44 @@ def borders() -> Iterator[Query]:
             yield from judged(experience, told, ())
 
 
+# Two gateways that are a slot apart, seen a slot off: the one is where the other is expected.
+SHIFTED = Experience(
+    *(12, [[0, 3, 4], [0], [0, 4, 5], [0], [0, 1, 9], [0]], [0, 0, 4, 0, 1]),
+    lengths=(None, None, 100, 100, 50),
+    tolerance=1,
+)
+EARS = seen("0 1 2 3", "0: 0 1", "1: 0 1", "1: 0 1 2 3", "1: 0 1", "1: 0 1", "1: 0 1 2 3")
+
+
+def stated() -> Iterator[Query]:
+    """What the statement of the paper says of what lies beyond it: where several logs are planar,
+    where the exploration is cut, and where bearings of links with lengths are not exact."""
+    several = [
+        Experience(4, [*EARS.views, [0]], [*EARS.turns, None], starts=[7]),
+        *(rested(EARS, step, "starts") for step in (3, 4, 5)),
+        *(logs(random.Random(f"stated {seed}"), 9) for seed in range(60)),
+    ]
+    for experience in several:
+        truth = Truth(experience)
+        if len(truth.final) < 400:
+            yield told_in_paper(experience, truth.having("planar"), "planar")
+    for experience in [SHIFTED, *KNOWN.values(), *LOGS.values()]:
+        yield told_in_paper(experience, Truth(experience).final)
+        yield told_in_paper(experience, Truth(experience).having("planar"), "planar")
+        for horizon in range(1, experience.steps):
+            found = Truth(experience).levels[horizon]
+            yield told_in_paper(experience, found, more=("-c", f"horizon={horizon}"))
+
+
+def told_in_paper(experience: Experience, found, *parts: str, more=()) -> Query:
+    """The statement of the paper, with the files for what is known of an experience."""
+    facts = experience.facts()
+    told = [*beyond(facts), *["beyond/tolerance"] * bool(experience.tolerance)]
+    files = tuple(f"paper/{name}" for name in ("topomap", *told, *parts))
+    answers = frozenset(((), ats(at)) for at in found)
+    return Query(files, facts, answers, (*constants(experience), *more))
+
+
 def judged(experience: Experience, at: list, *every: tuple[str, ...]) -> Iterator[Query]:
     """What is wrong with a map where this is demanded."""
     for demands in every:
@@ -1591,6 +1629,7 @@ SUITES = (
     off_or_bent,
     check_bent,
     borders,
+    stated,
     further_bent,
     following_bent,
     misread,
