@@ -1004,8 +1004,8 @@ def begun(facts: str, experience: Experience, pairs: phase_answers.Pairs, horizo
 
 def sizes() -> list[Query]:
     """What the size of the encodings is taken by: every other named experience with all the parts,
-    one in eight where rules may be waived, some of what is asked of the phases and step by step,
-    and a large exploration in which it is known which visits are new."""
+    one in eight where rules may be waived, some of what is asked of the phases and step by step;
+    and, first of all, a large exploration in which it is known which visits are new."""
     files = ("topomap", "bound", "query", *PARTS, "genus", "minimal")
     many = ("-c", "places=99")
     waived = ("topomap", "explain", "perpendicular")
@@ -1021,7 +1021,7 @@ def sizes() -> list[Query]:
     pairs = "".join(f"{atom}. " for atom in phase_answers.Pairs(experience).shown())
     large = experience.facts() + "phases. " + pairs + known
     plane = Query(("phases/topomap", "planar"), large, frozenset())
-    return [*whole, *phases[::40], plane, *[*following()][::20]]
+    return [plane, *whole, *phases[::40], *[*following()][::20]]
 
 
 def check() -> Iterator[Query]:
