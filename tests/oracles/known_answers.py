@@ -1059,9 +1059,12 @@ def borders() -> Iterator[Query]:
         less = replace(experience, compass=(), shifts=(), lengths=(), same=(), apart=(), things=())
         less = replace(less, straight=(), tolerance=2 * less.tolerance)
         found = sorted(Truth(less).final)
+        turned = re.sub(r"(same|apart)\((\d+),(\d+)\)", r"\1(\3,\2)", experience.facts())
         for at in random.Random(experience.facts()).sample(found, min(12, len(found))):
             told = [(step, *dstate) for step, dstate in enumerate(at)]
-            yield from judged(experience, told, ())
+            for query in judged(experience, told, ()):
+                yield query
+                yield replace(query, facts=query.facts.replace(experience.facts(), turned))
 
 
 # Two gateways that are a slot apart, seen a slot off: the one is where the other is expected.
