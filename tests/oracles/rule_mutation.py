@@ -424,8 +424,11 @@ def fates(
                             for query, number in least
                             if query.files in mutated
                         )
-                        first = next((more for more in differences if more), 0)
-                        fate = "larger" if first > 0 else fate
+                        try:
+                            first = next((more for more in differences if more), 0)
+                            fate = "larger" if first > 0 else fate
+                        except MemoryError:
+                            fate = "endless"
                     settled = order.names[mine[number]] if number >= 0 else str(most)
                     os.write(told, f"{fate or 'wrong'} {settled}".encode())
                     code = 0
