@@ -9,6 +9,7 @@ not survive or does not exist; 2 bad input or usage; 130 interrupted.
 
 import argparse
 import hashlib
+import math
 import os
 import platform
 import random
@@ -16,6 +17,7 @@ import re
 import resource
 import signal
 import sys
+import time
 import tomllib
 from collections import Counter, defaultdict
 from collections.abc import Callable, Container, Iterable, Iterator, Mapping, Sequence
@@ -38,7 +40,8 @@ from oracles.known_answers import Query, queries, sizes
 LISTED = ROOT / "tests/oracles/equivalent.toml"
 REPORT = ROOT / "docs/mutation.md"
 KINDS = ("remove", "drop", "negate", "shift")
-FATES = ("survived", "killed", "refused", "endless", "larger")
+UNTRIED = "untried"  # as there was no time
+FATES = ("survived", "killed", "refused", "endless", "larger", UNTRIED)
 SECONDS = 5  # of the processor, for one query: the encodings take milliseconds
 BYTES = 2 << 30
 QUERIES = 100  # for one mutant at most: that many settle nearly all that any query settles
@@ -60,8 +63,8 @@ too, is *larger* if it grounds to more rules at the first of {sizes} queries at 
 another one: some of the named experiences with all the parts, and some of what `phases/` and
 `online/` are asked. Another one is *equivalent* if
 `tests/oracles/equivalent.toml` says why, and else it has *survived*: another query may kill it, or
-a proof is missing. Comments, `#include` and `#heuristic`, which is but an order of the search, are
-not mutated.
+a proof is missing. It is *untried* if there was no time. Comments, `#include` and `#heuristic`,
+which is but an order of the search, are not mutated.
 """
 COMPLEMENT = {
     ast.ComparisonOperator.Equal: ast.ComparisonOperator.NotEqual,
@@ -427,7 +430,7 @@ def fates(
                         try:
                             first = next((more for more in differences if more), 0)
                             fate = "larger" if first > 0 else fate
-                        except MemoryError:
+                        except (MemoryError, RuntimeError):  # clingo is out of memory
                             fate = "endless"
                     settled = order.names[mine[number]] if number >= 0 else str(most)
                     os.write(told, f"{fate or 'wrong'} {settled}".encode())
@@ -480,9 +483,14 @@ def marks(
 
 
 def going_on(
-    path: Path, mark: dict[Mutant, str], trials: Trials, most: int = QUERIES
+    path: Path,
+    mark: dict[Mutant, str],
+    trials: Trials,
+    most: int = QUERIES,
+    minutes: float = math.inf,
 ) -> Iterator[Tried]:
-    """The fates that a file knows already, then those of the others, which are added to it.
+    """The fates that a file knows already, then those of the others, which are added to it; after
+    these minutes, the rest is untried.
 
     A line of the file has a digest of the rule and the change of a mutant, its mark, its fate
     and the query that settled it, or how many it was asked; the last line of a mutant counts. If
@@ -506,11 +514,17 @@ def going_on(
             continue
         left.append(mutant)
     path.parent.mkdir(parents=True, exist_ok=True)
+    late = time.monotonic() + 60 * minutes
+    untried = dict.fromkeys(left)
     with path.open("a") as file:
         for one in trials(left, before):
             file.write(f"{keys[one.mutant]} {mark[one.mutant]} {one.fate} {one.query}\n")
             file.flush()
+            del untried[one.mutant]
             yield one
+            if time.monotonic() > late:
+                break
+    yield from (Tried(mutant, UNTRIED, "-") for mutant in untried)
 
 
 def listed(path: Path) -> dict[Key, str]:
@@ -585,7 +599,9 @@ def faults(fate: dict[Mutant, str], reasons: dict[Key, str], known: set[Key]) ->
     for mutant, end in fate.items():
         if end == "survived" and mutant.key not in reasons:
             yield f"survives, not listed: {mutant}"
-        if end != "survived" and mutant.key in reasons:
+        if end == UNTRIED:
+            yield f"not tried: {mutant}"
+        elif end != "survived" and mutant.key in reasons:
             yield f"listed, but {end}: {mutant}"
     for key in reasons:
         if key not in known:
@@ -612,6 +628,12 @@ def main(
         default=QUERIES,
         help="ask each mutant at most N queries (default: %(default)s)",
     )
+    parser.add_argument(
+        "--minutes",
+        type=count,
+        default=math.inf,
+        help="with --known: leave untried what was not tried after so many minutes",
+    )
     parser.add_argument("files", nargs="*", help="try only these, as theory/links; no report")
     options = parser.parse_args(argv)
     names = named_files(folder)
@@ -636,7 +658,7 @@ def main(
         found = trials(chosen, {})
         if options.known:
             mark = marks(folder, chosen, asked(), measured())
-            found = going_on(options.known, mark, trials, options.queries)
+            found = going_on(options.known, mark, trials, options.queries, options.minutes)
         ends = {one.mutant: one.fate for one in tqdm(found, "mutants", len(chosen), disable=None)}
         fate = {mutant: ends[mutant] for mutant in chosen}
         if not (options.files or options.sample):

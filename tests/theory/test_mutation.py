@@ -3,8 +3,10 @@
 import os
 import subprocess
 import sys
+import time
 from collections import Counter
 from dataclasses import replace
+from types import SimpleNamespace
 
 import pytest
 from conftest import ENCODINGS, ROOT
@@ -124,8 +126,10 @@ def test_these_mutants_are_made(tmp_path):
 def test_all_is_well_if_only_listed_mutants_survive(mutated):
     status, out, _, report = mutated(listing(EQUIVALENT))
     assert status == 0
-    assert out == "11 mutants: 1 survived, 7 killed, 2 refused, 1 endless, 0 larger\n"
-    assert "| `counter.lp` | 3 | 2 | 2 | 4 | 11 | 0 | 7 | 2 | 1 | 0 | 1 |" in report.splitlines()
+    assert out == "11 mutants: 1 survived, 7 killed, 2 refused, 1 endless, 0 larger, 0 untried\n"
+    assert (
+        "| `counter.lp` | 3 | 2 | 2 | 4 | 11 | 0 | 7 | 2 | 1 | 0 | 0 | 1 |" in report.splitlines()
+    )
     assert "- `remove`: R." in report.splitlines()
     assert mutated(listing(EQUIVALENT), "-j", "3")[3] == report
 
@@ -209,6 +213,22 @@ def test_a_survivor_is_asked_more_as_soon_as_it_may_be(mutated, tmp_path, monkey
     lines = known.read_text().splitlines()
     assert len(lines) == 12
     assert lines[-1].split()[2:] == ["killed", mutate.name_of(more)]
+
+
+def test_what_there_is_no_time_for_is_untried(mutated, tmp_path, monkeypatch):
+    """It is in the report, and makes the run fail; the next run goes on."""
+    known = tmp_path / "known.txt"
+    clock = iter([0, *range(50, 10_000, 50)])
+    monkeypatch.setattr(mutate, "time", SimpleNamespace(monotonic=lambda: next(clock)))
+    status, out, _, report = mutated(listing(EQUIVALENT), "--known", str(known), "--minutes", "1")
+    assert (status, len(known.read_text().splitlines())) == (1, 2)
+    first, *faults = out.splitlines()
+    assert first.endswith(" 9 untried")
+    assert len(faults) == 9 and all(fault.startswith("not tried: ") for fault in faults)
+    assert "| 9 | 0 |" in report
+    monkeypatch.setattr(mutate, "time", time)
+    assert mutated(listing(EQUIVALENT), "--known", str(known))[0] == 0
+    assert len(known.read_text().splitlines()) == 11
 
 
 MARKS = """
