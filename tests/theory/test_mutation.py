@@ -224,7 +224,8 @@ def test_what_there_is_no_time_for_is_untried(mutated, tmp_path, monkeypatch):
     assert (status, len(known.read_text().splitlines())) == (1, 2)
     first, *faults = out.splitlines()
     assert first.endswith(" 9 untried")
-    assert len(faults) == 9 and all(fault.startswith("not tried: ") for fault in faults)
+    assert len(faults) == 9
+    assert all(fault.startswith("not tried: ") for fault in faults)
     assert "| 9 | 0 |" in report
     monkeypatch.setattr(mutate, "time", time)
     assert mutated(listing(EQUIVALENT), "--known", str(known))[0] == 0
