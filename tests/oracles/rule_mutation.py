@@ -435,6 +435,9 @@ def fates(
                     settled = order.names[mine[number]] if number >= 0 else str(most)
                     os.write(told, f"{fate or 'wrong'} {settled}".encode())
                     code = 0
+                except MemoryError:  # where the encodings were asked without the change, say
+                    os.write(told, b"endless -")
+                    code = 0
                 finally:
                     os._exit(code)
             child, status = os.wait()
