@@ -1073,7 +1073,7 @@ SHIFTED = Experience(
     lengths=(None, None, 100, 100, 50),
     tolerance=1,
 )
-EARS = seen("0 1 2 3", "0: 0 1", "1: 0 1", "1: 0 1 2 3", "1: 0 1", "1: 0 1", "1: 0 1 2 3")
+EARS = EXPERIENCES["ears"]
 
 
 def stated() -> Iterator[Query]:

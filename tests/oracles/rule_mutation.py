@@ -52,9 +52,10 @@ Written by `make mutate`, with clingo {clingo} and Python {python}.
 A mutant is an encoding changed in one place: a statement removed; a literal of a body or of a
 condition dropped; one negated, or a comparison turned into its complement; a number made one
 greater or one less. Mutants that read the same are one. Each is asked at most {most:,} of the
-{all:,} queries of `tests/oracles/known_answers.py`, of those that load it, whose answers are known
-without the encodings: first those that settled most mutants of the same rule, then those that give
-most of what the rule is about, then those that settled most others. It is *killed* when one gives
+{all:,} queries of `tests/oracles/known_answers.py`, or
+more in a run that this one went on with, of those that load it, whose answers are known without the
+encodings: first those that settled most mutants of the same rule, then those that give most of
+what the rule is about, then those that settled most others. It is *killed* when one gives
 other answers (other models, shown atoms or costs, or a model twice), *refused* when clingo has an
 error or a message for it, *endless* when a query takes more than {seconds} seconds of the processor
 or {memory} MiB of memory. (If the encoding without the change gives other answers too, the run ends
@@ -378,8 +379,8 @@ def fates(
     most: int = QUERIES,
 ) -> Iterator[Tried]:
     """The fate of each mutant, as they come, each in a process of its own; the ``proved`` ones come
-    last, so that they find out most. ``before`` has the name of the query that settled a mutant
-    once. A mutant that survives ``most`` queries, and is not larger, has survived."""
+    last, as none of them should be settled. ``before`` has the name of the query that settled a
+    mutant once. A mutant that survives ``most`` queries, and is not larger, has survived."""
     loaded = sets(folder, asked + measured)
     order = Order(asked, before)
     names = set().union(*loaded.values())
@@ -639,6 +640,8 @@ def main(
     )
     parser.add_argument("files", nargs="*", help="try only these, as theory/links; no report")
     options = parser.parse_args(argv)
+    if options.minutes < math.inf and not options.known:
+        parser.error("--minutes needs --known, where the next run finds what was tried")
     names = named_files(folder)
     try:
         if unknown := set(options.files) - set(names):

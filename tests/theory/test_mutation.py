@@ -215,6 +215,13 @@ def test_a_survivor_is_asked_more_as_soon_as_it_may_be(mutated, tmp_path, monkey
     assert lines[-1].split()[2:] == ["killed", mutate.name_of(more)]
 
 
+def test_minutes_need_a_file_for_what_was_tried(mutated, capsys):
+    with pytest.raises(SystemExit) as end:
+        mutated(listing(EQUIVALENT), "--minutes", "1")
+    assert end.value.code == 2
+    assert "--minutes needs --known" in capsys.readouterr().err
+
+
 def test_what_there_is_no_time_for_is_untried(mutated, tmp_path, monkeypatch):
     """It is in the report, and makes the run fail; the next run goes on."""
     known = tmp_path / "known.txt"
@@ -385,7 +392,8 @@ def test_what_is_open_survives(key):
     """Each entry is a mutant, and still survives: else it is to go from the list."""
     assert key not in mutate.listed(mutate.LISTED)
     (mutant,) = [one for one in mutate.mutants(ENCODINGS, key[0]) if one.key == key]
-    ((_, fate, _),) = mutate.fates(ENCODINGS, [mutant], queries(), sizes(), 1, most=MANY)
+    every = len(queries())
+    ((_, fate, _),) = mutate.fates(ENCODINGS, [mutant], queries(), sizes(), 1, most=every)
     assert fate == "survived"
 
 
