@@ -305,8 +305,8 @@ def test_a_mutant_that_only_grounds_to_more_is_larger(tmp_path):
     files = ["--listed", str(listed), "--report", str(report)]
     assert mutate.main(files, tmp_path, lambda: asked, lambda: asked[1:]) == 1
     rows = report.read_text().splitlines()
-    assert "| `some.lp` | 1 | 2 | 2 | 2 | 7 | 3 | 0 | 2 | 0 | 2 | 0 |" in rows
-    assert "| `paper/other.lp` | 2 | 2 | 2 | 2 | 8 | 5 | 1 | 2 | 0 | 0 | 0 |" in rows
+    assert "| `some.lp` | 1 | 2 | 2 | 2 | 7 | 3 | 0 | 2 | 0 | 2 | 0 | 0 |" in rows
+    assert "| `paper/other.lp` | 2 | 2 | 2 | 2 | 8 | 5 | 1 | 2 | 0 | 0 | 0 | 0 |" in rows
 
 
 def test_a_sample_is_of_mutants_that_are_not_listed_and_writes_nothing(mutated):
