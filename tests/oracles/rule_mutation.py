@@ -54,10 +54,10 @@ condition dropped; one negated, or a comparison turned into its complement; a nu
 greater or one less. Mutants that read the same are one. Each is asked at most {most:,} of the
 {all:,} queries of `tests/oracles/known_answers.py`, or
 more in a run that this one went on with, of those that load it, whose answers are known without the
-encodings: first those that settled most mutants of the same rule, then those that give most of
-what the rule is about, then those that settled most others. It is *killed* when one gives
-other answers (other models, shown atoms or costs, or a model twice), *refused* when clingo has an
-error or a message for it, *endless* when a query takes more than {seconds} seconds of the processor
+encodings: by turns one that settled most mutants of the same rule or file, one that gives most of
+what the rule is about, one that does so and loads fewest files, and one at random. It is *killed*
+when one gives other answers (other models, shown atoms or costs, or a model twice), *refused* when
+clingo has an error or a message for it, *endless* when a query takes more than {seconds} seconds of the processor
 or {memory} MiB of memory. (If the encoding without the change gives other answers too, the run ends
 with an error.) When these answers are right, a mutant of an encoding whose worth is in its size,
 too, is *larger* if it grounds to more rules at the first of {sizes} queries at which the number is
@@ -327,10 +327,10 @@ def ends(rule: str) -> tuple[set[str], set[str]]:
 
 
 class Order:
-    """The order in which a mutant is asked: at first what settled it ``before``, then what settled
-    most mutants of the same rule, then what loads fewest files, then what gives most of what the
-    rule is about and few others give, then what settled most mutants of the same file, and of all.
-    Every other query is drawn at random, as those that come together are much alike."""
+    """The order in which a mutant is asked. Four orders take turns: what settled it ``before``, then
+    what settled most mutants of the same rule, of the same file, and of all; what gives most of what
+    the rule is about and few others give; the same, of what loads fewest files; and an order at
+    random, as queries that one of the others puts together are much alike."""
 
     def __init__(self, asked: Sequence[Query], before: Mapping[Mutant, str]) -> None:
         self.names = [name_of(query) for query in asked]
@@ -355,17 +355,23 @@ class Order:
         of_rule = self.settlers[mutant.file, mutant.rule]
         of_file, of_all = self.settlers[mutant.file,], self.settlers[()]
         fewest = min(loading.values())
+        told = {
+            number: sign * sum(1 / often[word] for word in topics & self.words[number])
+            for number in loading
+        }
 
-        def worth(number: int) -> tuple[float, ...]:
+        def settled(number: int) -> tuple[int, ...]:
             name = self.names[number]
-            first = name == self.before.get(mutant), of_rule[name], loading[number] == fewest
-            told = sign * sum(1 / often[word] for word in topics & self.words[number])
-            return *first, told, of_file[name], of_all[name]
+            return name == self.before.get(mutant), of_rule[name], of_file[name], of_all[name]
 
-        ranked = sorted(loading, key=worth, reverse=True)
-        return list(
-            dict.fromkeys(number for pair in zip(ranked, loading, strict=True) for number in pair)
+        def short(number: int) -> tuple[bool, float]:
+            return loading[number] == fewest, told[number]
+
+        orders = (
+            sorted(loading, key=key, reverse=True) for key in (settled, told.__getitem__, short)
         )
+        turns = zip(*orders, loading, strict=True)
+        return list(dict.fromkeys(number for turn in turns for number in turn))
 
 
 def fates(
