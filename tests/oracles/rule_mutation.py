@@ -57,8 +57,8 @@ more in a run that this one went on with, of those that load it, whose answers a
 encodings: by turns one that settled most mutants of the same rule or file, one that gives most of
 what the rule is about, one that does so and loads fewest files, and one at random. It is *killed*
 when one gives other answers (other models, shown atoms or costs, or a model twice), *refused* when
-clingo has an error or a message for it, *endless* when a query takes more than {seconds} seconds of the processor
-or {memory} MiB of memory. (If the encoding without the change gives other answers too, the run ends
+clingo has an error or a message for it, *endless* when a query takes more than {seconds} seconds of
+the processor or {memory} MiB of memory. (If the encoding without the change gives other answers too, the run ends
 with an error.) When these answers are right, a mutant of an encoding whose worth is in its size,
 too, is *larger* if it grounds to more rules at the first of {sizes} queries at which the number is
 another one: some of the named experiences with all the parts, and some of what `phases/` and
@@ -327,10 +327,10 @@ def ends(rule: str) -> tuple[set[str], set[str]]:
 
 
 class Order:
-    """The order in which a mutant is asked. Four orders take turns: what settled it ``before``, then
-    what settled most mutants of the same rule, of the same file, and of all; what gives most of what
-    the rule is about and few others give; the same, of what loads fewest files; and an order at
-    random, as queries that one of the others puts together are much alike."""
+    """The order in which a mutant is asked. Four orders take turns: what settled it ``before``,
+    then what settled most mutants of the same rule, of the same file, and of all; what gives most
+    of what the rule is about and few others give; the same, of what loads fewest files; and an
+    order at random, as queries that one of the others puts together are much alike."""
 
     def __init__(self, asked: Sequence[Query], before: Mapping[Mutant, str]) -> None:
         self.names = [name_of(query) for query in asked]
