@@ -141,10 +141,29 @@ DRAWN = [*((seed, 8, seed % 3) for seed in range(100)), (602, 14, 0), (2408, 12,
 
 
 # Walks whose runs meet at places of four gateways, most of them found by such a search.
-# Random walks, by seed, for which each of these leaves out some hypotheses: the path axiom, planarity,
-# consistent boundaries and perpendicularity. Of most random walks there is one hypothesis.
+# Random walks, by seed, for which each of these leaves out some hypotheses: the path axiom,
+# planarity, consistent boundaries and perpendicularity. (Most random walks have one hypothesis.)
 BITING = [
-    *(94, 158, 226, 294, 321, 330, 430, 439, 497, 614, 687, 815, 1036, 1151, 1198, 1334, 1484, 1541),
+    *(
+        94,
+        158,
+        226,
+        294,
+        321,
+        330,
+        430,
+        439,
+        497,
+        614,
+        687,
+        815,
+        1036,
+        1151,
+        1198,
+        1334,
+        1484,
+        1541,
+    ),
     *(1568, 1671, 1782, 1956, 2318, 2519, 2549, 2591, 2741, 2868, 2900),
 ]
 WALKS = [
@@ -725,8 +744,8 @@ def given_up_of(experience: Experience, every: list[Assignment]) -> Iterator[Que
 
 
 def excused(experience: Experience, truth: Truth) -> Iterator[Query]:
-    """All hypotheses, with what a part would give up of each, and nothing else is given up: two paths
-    that meet twice, three that form a triangle, and places on both sides of a path."""
+    """All hypotheses, with what a part would give up of each, and nothing else is given up: two
+    paths that meet twice, three that form a triangle, and places on both sides of a path."""
     twice, three, sides = {}, {}, {}
     for at, h in truth.final.items():
         paths = {name: frozenset(place for place, _ in path) for name, path in named_paths(h)}
@@ -1023,8 +1042,8 @@ def phased(experience: Experience) -> Iterator[Query]:
 
 
 def biting() -> Iterator[Query]:
-    """Experiences for which each demand leaves out some hypotheses: at once, in phases, step by step;
-    statements; and what is wrong with what is left out."""
+    """Experiences for which each demand leaves out some hypotheses: at once, in phases, step by
+    step; statements; and what is wrong with what is left out."""
     for number, seed in enumerate(BITING):
         experience = random_experience(random.Random(f"biting {seed}"), 14)
         truth, loose = Truth(experience), Truth(experience, axiom=False)

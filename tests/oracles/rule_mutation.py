@@ -22,6 +22,7 @@ import tomllib
 from collections import Counter, defaultdict
 from collections.abc import Callable, Container, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cache
 from itertools import groupby, product
 from pathlib import Path
 from types import MappingProxyType
@@ -55,8 +56,8 @@ greater or one less. Mutants that read the same are one. Each is asked at most {
 {all:,} queries of `tests/oracles/known_answers.py`, or
 more in a run that this one went on with, of those that load it, whose answers are known without the
 encodings: by turns one that settled most mutants of the same rule or file, one that gives most of
-what the rule is about, one that does so and loads fewest files, and one at random. It is *killed*
-when one gives other answers (other models, shown atoms or costs, or a model twice), *refused* when
+what the rule is about, one that does so with other files, and one at random. It is *killed* when
+one gives other answers (other models, shown atoms or costs, or a model twice), *refused* when
 clingo has an error or a message for it, *endless* when a query takes more than {seconds} seconds of
 the processor or {memory} MiB of memory. (If the encoding without the change gives other answers
 too, the run ends with an error.) When these answers are right, a mutant of an encoding whose worth
@@ -297,44 +298,61 @@ def suffer(programs: Programs, whole: Programs, asked: list[Query]) -> tuple[str
 
 
 WORD = re.compile(r"\b[a-z0-9]\w*")
+NAME = re.compile(r"\b[a-z]\w+")  # not t, the step of the program parts
+DEFINED = re.compile(r"#defined [^.]*\.")
+MANY = 9  # rules of one predicate, such as needs/1: what they ask for has little to do with it
 
 
 def words(query: Query) -> frozenset[str]:
     """The names and numbers in what a query gives and loads: predicates, constants, terms and
     files; and the program parts that are grounded with its steps."""
-    given = query.facts, *query.steps, *query.arguments, *query.files
+    facts = DEFINED.sub("", query.facts)
+    given = facts, *query.steps, *query.arguments, *query.files
     return frozenset(WORD.findall(" ".join(given))) | {f"#program {part}" for part in query.parts}
 
 
-def concerned(mutant: Mutant, among: Sequence[str]) -> set[str]:
-    """The names in the rule of a mutant, and in those statements of its file that define what its
-    body asks for, or ask for what it defines; and the program part of the rule."""
-    found = set(WORD.findall(mutant.rule))
-    head, body = ends(mutant.rule)
+def concerned(mutant: Mutant, among: Sequence[str], others: Iterable[str]) -> dict[str, float]:
+    """How much each name has to do with the rule of a mutant: 1 for the names in the rule and for
+    its program part, a quarter for its numbers; half of 1 for those of the statements that define
+    what its body asks for, or ask for what it defines; and so on, by half, for those that define
+    what these ask for. ``among`` is what its file states, and ``others`` what is loaded with it."""
+    found = {word: 0.25 if word.isdecimal() else 1.0 for word in WORD.findall(mutant.rule)}
     parts = [text for text in among[: mutant.number] if text.startswith("#program")]
-    found |= {part.partition("(")[0] for part in parts[-1:]}
-    for text in among:
-        defined, asked = ends(text)
-        if body & defined or head & asked:
-            found |= defined | asked
-    return found
+    found |= {part.partition("(")[0]: 1.0 for part in parts[-1:]}
+    near = ends(mutant.rule)
+    waiting = [ends(text) for text in {*among, *others} if not text.startswith("#d")]
+    rules_of = Counter(name for defined, _ in waiting for name in defined)
+    heads, asked, weight = near[0], near[1], 0.5
+    while True:
+        asked = {name for name in asked if rules_of[name] < MANY}
+        come = [two for two in waiting if asked & two[0] or heads & two[1]]
+        if not come:
+            return found
+        waiting = [two for two in waiting if two not in come]
+        names = frozenset().union(*(one | other for one, other in come))
+        found = dict.fromkeys(names, weight) | found
+        asked, heads = frozenset().union(*(other for _, other in come)), frozenset()
+        weight /= 2
 
 
-def ends(rule: str) -> tuple[set[str], set[str]]:
-    """The names in the head of a rule, and in its body."""
+@cache
+def ends(rule: str) -> tuple[frozenset[str], frozenset[str]]:
+    """The names in the head of a rule, and in its body, without numbers."""
     head, _, body = rule.partition(" :- ")
-    return set(WORD.findall(head)), set(WORD.findall(body))
+    return frozenset(NAME.findall(head)), frozenset(NAME.findall(body))
 
 
 class Order:
     """The order in which a mutant is asked. Four orders take turns: what settled it ``before``,
     then what settled most mutants of the same rule, of the same file, and of all; what gives most
-    of what the rule is about and few others give; the same, of what loads fewest files; and an
-    order at random, as queries that one of the others puts together are much alike."""
+    of what the rule is about and few others give; the same, by turns of each set of files that is
+    loaded, the smallest sets first; and an order at random, as queries that one of the others puts
+    together are much alike."""
 
     def __init__(self, asked: Sequence[Query], before: Mapping[Mutant, str]) -> None:
         self.names = [name_of(query) for query in asked]
         self.words = [words(query) for query in asked]
+        self.files = [query.files for query in asked]
         self.before = before
         self.settlers: dict[tuple[str, ...], Counter[str]] = defaultdict(Counter)
         for mutant, name in before.items():
@@ -345,18 +363,28 @@ class Order:
         for among in (mutant.file, mutant.rule), (mutant.file,), ():
             self.settlers[among][name] += 1
 
-    def of(self, mutant: Mutant, loading: dict[int, int], among: Sequence[str]) -> list[int]:
+    def of(
+        self,
+        mutant: Mutant,
+        loading: dict[int, int],
+        among: Sequence[str],
+        others: Iterable[str] = (),
+    ) -> list[int]:
         """These queries in that order, by number, each with how many files it loads, given in an
-        order at random; ``among`` is what the file of the mutant states."""
-        topics = concerned(mutant, among)
-        often = Counter(word for number in loading for word in topics & self.words[number])
+        order at random; ``among`` is what the file of the mutant states, and ``others`` what is
+        loaded with it."""
+        topics = concerned(mutant, among, others)
+        often = Counter(word for number in loading for word in topics.keys() & self.words[number])
         # A predicate is said to be defined for those that do not give it.
         sign = -1 if mutant.rule.startswith("#defined") else 1
         of_rule = self.settlers[mutant.file, mutant.rule]
         of_file, of_all = self.settlers[mutant.file,], self.settlers[()]
-        fewest = min(loading.values())
         told = {
-            number: sign * sum(1 / often[word] for word in topics & self.words[number])
+            number: sign
+            * sum(
+                topics[word] * math.log(len(loading) / often[word])
+                for word in topics.keys() & self.words[number]
+            )
             for number in loading
         }
 
@@ -364,12 +392,15 @@ class Order:
             name = self.names[number]
             return name == self.before.get(mutant), of_rule[name], of_file[name], of_all[name]
 
-        def short(number: int) -> tuple[bool, float]:
-            return loading[number] == fewest, told[number]
-
-        orders = (
-            sorted(loading, key=key, reverse=True) for key in (settled, told.__getitem__, short)
-        )
+        by_topic = sorted(loading, key=told.__getitem__, reverse=True)
+        before: Counter[tuple[str, ...]] = Counter()
+        place = {}
+        for number in by_topic:
+            files = self.files[number]
+            place[number] = before[files], loading[number]
+            before[files] += 1
+        of_others = sorted(loading, key=settled, reverse=True)
+        orders = of_others, by_topic, sorted(loading, key=place.__getitem__)
         turns = zip(*orders, loading, strict=True)
         return list(dict.fromkeys(number for turn in turns for number in turn))
 
@@ -418,7 +449,11 @@ def fates(
                         for number, query in enumerate(asked)
                         if mutant.file in loaded[query.files]
                     }
-                    mine = order.of(mutant, loading, texts[mutant.file])
+                    together = set().union(
+                        *(every for every in loaded.values() if mutant.file in every)
+                    )
+                    others = [text for name in sorted(together) for text in texts[name]]
+                    mine = order.of(mutant, loading, texts[mutant.file], others)
                     texts[mutant.file][mutant.number] = mutant.text
                     mutated = {
                         files: program(files)
