@@ -262,7 +262,8 @@ def go(control: clingo.Control, number: int, step: str, parts: tuple[str, ...]) 
 
 def rules(program: str, query: Query) -> int:
     """How many rules a program grounds to."""
-    control = clingo.Control(["1", "--opt-mode=ignore"])
+    told = [word for word in query.arguments if word == "-c" or ("=" in word and word[0] != "-")]
+    control = clingo.Control(["1", "--opt-mode=ignore", *told])
     control.add("base", [], program)
     control.add("base", [], query.facts)
     control.ground([("base", [])])
