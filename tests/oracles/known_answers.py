@@ -7,7 +7,7 @@ load it.
 
 import random
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
 from functools import cache, partial
 from itertools import combinations, product
@@ -1044,8 +1044,7 @@ def biting() -> Iterator[Query]:
         if few:
             yield from followed(number, experience, "no_path_axiom")
             yield from _asked(draw, experience, loose, "no_path_axiom")
-        for at in draw.sample(few, min(8, len(few))):
-            told = [(step, *dstate) for step, dstate in enumerate(at)]
+        for told in enumerated(draw.sample(few, min(8, len(few)))):
             yield from judged(experience, told, DEMANDS, (*DEMANDS, NO_PATH_AXIOM))
 
 
@@ -1127,11 +1126,13 @@ def sizes() -> list[Query]:
     for told in (*known, *several, *bent_, EXPERIENCES["marker"]):
         how = constants(told)
         cut = (*how, "-c", "horizon=1")
-        less = told.cut(2).facts()
+        less = told.cut(min(2, told.steps)).facts()
         more += [Query(files, told.facts(), frozenset(), (*many, *how))]
         more += [Query(files, told.facts(), frozenset(), (*many, *cut))]
         more += [Query((*files, "no_path_axiom"), told.facts(), frozenset(), (*many, *how))]
         more += [Query(waived, less, frozenset(), how)]
+    told = EXPERIENCES["stages"]
+    more += judged(told, next(enumerated(sorted(Truth(told).final))), DEMANDS)
     return [plane, *whole, *phases[::40], *[*following()][::20], *more]
 
 
@@ -1162,8 +1163,8 @@ def borders() -> Iterator[Query]:
             for files in (("topomap",), ("paper/topomap", "paper/beyond/tolerance")):
                 if "straight" not in facts:
                     yield Query(files, facts, found, wide)
-            for at in Truth(any_bearings).final:
-                told = [(step, *dstate) for step, dstate in enumerate(at)]
+            maps = [*enumerated(Truth(any_bearings).final), [(0, 0, 0), (1, 1, 0), (2, 2, 0)]]
+            for told in maps:
                 for query in judged(any_bearings, told, ()):
                     yield replace(query, arguments=wide)
     for experience in [*KNOWN.values(), *LOGS.values(), *BENT.values()]:
@@ -1171,8 +1172,8 @@ def borders() -> Iterator[Query]:
         less = replace(less, straight=(), tolerance=2 * less.tolerance)
         found = sorted(Truth(less).final)
         turned = re.sub(r"(same|apart)\((\d+),(\d+)\)", r"\1(\3,\2)", experience.facts())
-        for at in random.Random(experience.facts()).sample(found, min(12, len(found))):
-            told = [(step, *dstate) for step, dstate in enumerate(at)]
+        some = random.Random(experience.facts()).sample(found, min(12, len(found)))
+        for told in enumerated(some):
             for query in judged(experience, told, ()):
                 yield query
                 yield replace(query, facts=query.facts.replace(experience.facts(), turned))
@@ -1216,6 +1217,12 @@ def told_in_paper(experience: Experience, found, *parts: str, more=()) -> Query:
     return Query(files, facts, answers, (*constants(experience), *more))
 
 
+def enumerated(maps: Iterable) -> Iterator[list[tuple[int, int, int]]]:
+    """Hypotheses as they are judged: step, place and gateway."""
+    for at in maps:
+        yield [(step, *dstate) for step, dstate in enumerate(at)]
+
+
 def judged(experience: Experience, at: list, *every: tuple[str, ...]) -> Iterator[Query]:
     """What is wrong with a map where this is demanded."""
     for demands in every:
@@ -1246,6 +1253,10 @@ def demands() -> Iterator[Query]:
             "slots(4). view(0,0). view(0,1). turn(1,0). view(1,0). view(1,3). at(0,0,0). at(1,0,1)."
         )
         yield Query(("check",), told + fact, shown(*["violation(path_twice,1)"] * breaks))
+
+    # Two circular paths meet at the one place that there is.
+    crossing = seen("0 1 2 3", "0: 0 1 2 3", "3: 0 1 2 3")
+    yield from judged(crossing, [(0, 0, 0), (1, 0, 2), (2, 0, 3)], ("boundary", NO_PATH_AXIOM))
 
 
 def faults() -> Iterator[Query]:
@@ -1344,10 +1355,7 @@ def further() -> Iterator[Query]:
             facts = bare(among)
         else:
             experience, found = signed(draw) if seed % 8 else walks.drawn(draw, 3, 6)
-            facts = experience.facts()
-            for number, at in enumerate(found):
-                facts += "".join(f"map({number},{t},{p},{s}). " for t, (p, s) in enumerate(at))
-            among = [walks.standing(experience, at) for at in found]
+            facts, among = of_one(experience, found)
         yield from planned(facts, among, n, carried, draw.choice([1, 2]))
         for pairs in (None, [(0, 1)])[: len(among)]:
             yield proved(facts, among, carried and seed % 4 > 0, pairs)
@@ -1366,6 +1374,14 @@ def further() -> Iterator[Query]:
         yield proved(bare(among), among, False, None)
 
 
+def of_one(experience: Experience, found: list) -> tuple[str, list[Standing]]:
+    """Hypotheses of one experience, as facts, and where the agent stands in each."""
+    facts = experience.facts()
+    for number, at in enumerate(found):
+        facts += "".join(f"map({number},{t},{p},{s}). " for t, (p, s) in enumerate(at))
+    return facts, [walks.standing(experience, at) for at in found]
+
+
 def further_bent() -> Iterator[Query]:
     """The same of maps in which pairs of gateways are given, in which there is a compass, and in
     which markers lie that have names."""
@@ -1380,10 +1396,13 @@ def further_bent() -> Iterator[Query]:
             if seed % 2 and experience.compass:  # not at each visit
                 known = [slot if draw.random() < 0.8 else None for slot in experience.compass]
                 experience = replace(experience, compass=known)
-            facts = experience.facts()
-            for number, at in enumerate(found):
-                facts += "".join(f"map({number},{t},{p},{s}). " for t, (p, s) in enumerate(at))
-            among = [walks.standing(experience, at) for at in found]
+            facts, among = of_one(experience, found)
+        yield from planned(facts, among, draw.choice([1, 2]), False, 1)
+        yield proved(facts, among, False, None)
+    for seed in (50, 262, 1299):  # a marker that was taken up would tell the maps apart
+        draw = random.Random(f"taken up {seed}")
+        experience = logs(draw, 7)
+        facts, among = of_one(experience, sorted(Truth(experience).final))
         yield from planned(facts, among, draw.choice([1, 2]), False, 1)
         yield proved(facts, among, False, None)
 
@@ -1548,6 +1567,16 @@ def following() -> Iterator[Query]:
     # Of several logs it is not followed what is planar.
     head, *steps = TWO.facts().splitlines()
     yield Query(("online",), f"online. {head}", frozenset(), (), tuple(steps), ("step", "planar"))
+    back = (
+        "slots(4).",
+        "view(0,0).",
+        "start(1). view(1,0).",
+        "1",
+        "after(2,0). turn(2,0). view(2,0).",
+    )
+    head, *steps = back
+    found = shown("at(0,0,0)", "at(2,2,0)")
+    yield Query(("online",), f"online. {head}", found, (), tuple(steps), ("step", "planar"))
     draws += [informed(random.Random(f"following known {seed}"), 6) for seed in range(20)]
     draws += [logs(random.Random(f"following logs {seed}"), 5) for seed in range(20)]
     for number, experience in enumerate([*(EXPERIENCES | WORLDS).values(), *draws]):
