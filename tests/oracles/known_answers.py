@@ -334,6 +334,9 @@ def knowledge() -> Iterator[Query]:
         )
         explained = f"{facts} :- waived(_)."
         yield Query(("topomap", "explain"), explained, answers, (*how, "--opt-mode=ignore"))
+        if experience.same or experience.apart:
+            turned = re.sub(r"(same|apart)\((\d+),(\d+)\)", r"\1(\3,\2)", facts)
+            yield Query(("topomap",), turned, answers, how)
         if len(truth.final) < 100:
             tests = {"planar": PROPERTIES["planar"], "closed": PROPERTIES["closed"]}
             tests |= {
@@ -352,6 +355,15 @@ def knowledge() -> Iterator[Query]:
         yield replace(left(facts, experience, Truth(experience), []), arguments=how)
     for experience in KNOWN.values():
         yield from waived(experience.cut(3), ())
+    for experience in [*KNOWN.values(), *LOGS.values()]:
+        truth = Truth(experience)
+        for horizon in range(experience.steps):
+            found = frozenset(((), ats(at)) for at in truth.levels[horizon])
+            how = (*constants(experience), "-c", f"horizon={horizon}")
+            yield Query(("topomap",), experience.facts(), found, how)
+            planar = Truth(experience.cut(horizon)).having("planar")
+            found = frozenset(((), ats(at)) for at in planar)
+            yield Query(("topomap", "planar"), experience.facts(), found, how)
 
 
 # Each of what is known besides views, where it holds and where it bites, at its border.
@@ -421,6 +433,8 @@ LOGS = {
     "a log from a corridor": rested(seen("0 2", "0: 0 2", "2: 0 2", "2: 0"), 2, "starts"),
     "a log of one place": Experience(4, [[0], [0], [0]], [0, None], starts=[2]),
     "two dead ends": Experience(4, [[0], [0]], [None], starts=[1]),
+    "three dead ends": Experience(4, [[0], [0], [0]], [None, None], starts=[1, 2]),
+    "a log that joins two": Experience(4, [[0], [0], [0], [0]], [None, None, 0], starts=[1, 2]),
     "two places": Experience(4, [[0, 1], [0, 1]], [None], starts=[1]),
     "a log with odometry": replace(TWO, shifts=((5, 0), (1, 1), (0, 5))),
     "coin and rope": Experience(
@@ -674,6 +688,9 @@ def off_or_bent() -> Iterator[Query]:
         how = (*constants(back), "--opt-mode=ignore")
         facts = f"{back.facts()} :- waived(R), R != view(2,0)."
         yield Query(("topomap", "explain", part), facts, found, how)
+    for told in ({"apart": [(0, 2)]}, {"shifts": [(9, 0), (9, 0)]}, {"lengths": [100, 50]}):
+        inexact = Experience(4, [[0], [0], [0]], [0, 0], tolerance=1, **told)
+        yield from given_up_of(inexact, [Assignment(inexact, at) for at in assignments(inexact)])
     number = 0
     for seed in range(10_000):
         draw = random.Random(f"broken bent {seed}")
@@ -1121,7 +1138,7 @@ def sizes() -> list[Query]:
     plane = Query(("phases/topomap", "planar"), large, frozenset())
     more = []
     known = KNOWN["odometry, a gap"], KNOWN["length"], KNOWN["same"], KNOWN["apart"]
-    several = LOGS["a look with odometry"], LOGS["a log"], LOGS["coin and rope"]
+    several = [LOGS[name] for name in ("a look with odometry", "three dead ends", "coin and rope")]
     bent_ = BENT["one slot off"], BENT["paths that bend"]
     for told in (*known, *several, *bent_, EXPERIENCES["marker"]):
         how = constants(told)
