@@ -131,6 +131,19 @@ EXPERIENCES = {
     # Two paths that meet twice: on no run of either; on two runs that an earlier one joins.
     "lens": walked(4, "p1 x3 x1 q3 x2 c0 c3 y1 p2 y0 y2 q0", "p1", "1 2 3 2 3 2 3 0"),
     "fork": walked(4, "p1 q3 p2 y0 y2 z0 z2 q0 z1 c3 c0 d2 d3 y1", "y2", "2 1 0 3 0 1 0"),
+    # Three runs on one path, the first of which and the last one would cross if the last place were
+    # the first; and the same walked with the middle one first, or last.
+    "three pieces": seen(
+        *("0 1 2 3", "0: 0 2 3", "3: 0", "0: 0 1 3", "3: 0 2 3", "3: 0", "0: 0 1 3", "3: 0 1 2 3")
+    ),
+    "the middle first": seen(
+        *("0 1 2", "0: 0 2 3", "3: 0", "0: 0 1 3", "3: 0 1 2 3", "3: 0 3", "3: 0 3", "3: 0 1 3"),
+        "1: 0 1 2 3",
+    ),
+    "the middle last": seen(
+        *("0 1 2 3", "0: 0 2 3", "3: 0 1 2", "1: 0 1 3", "3: 0 1 2 3", "2: 0 3", "3: 0 3"),
+        *("3: 0 2 3", "2: 0 1 3", "3: 0 2 3"),
+    ),
     # The path along the row ends twice where a run of several steps does.
     "both ends of a row": of_grid(2, 5, "grid", (0, 2, 1), "EESWWNWW"),
     "star": seen("0 1 2", "0: 0", "0: 0 1 2", "1: 0", "0: 0 1 5", "1: 0", "0: 0 4 5", slots=6),
@@ -1008,6 +1021,13 @@ def phases() -> Iterator[Query]:
     experiences += [random_experience(random.Random(f"corpus {seed}"), 8) for seed in range(60)]
     for experience in experiences:
         yield from phased(experience)
+    # No map is left where a visit is said to be apart from itself.
+    for experience in (seen("0", "0: 0"), EXPERIENCES["round"]):
+        facts = experience.facts() + "phases. "
+        facts += "".join(f"{atom}. " for atom in phase_answers.Pairs(experience).shown())
+        facts += phase_answers.text([("apart", experience.steps, experience.steps, 0)])
+        for entry in ("phases/topomap", "phases/lines"):
+            yield Query((entry,), facts, frozenset(), ("--project",))
 
 
 def phased(experience: Experience) -> Iterator[Query]:
