@@ -311,7 +311,11 @@ def constants(experience: Experience) -> tuple[str, ...]:
 
 
 def theory() -> Iterator[Query]:
-    """Experiences, with the answers that the independent search gives."""
+    """Experiences, with the answers that the independent search gives; and what is none."""
+    # No visit sees the gateway at which it stands, or the number of directions is not given.
+    yield Query(("topomap",), "slots(4). view(0,0). turn(1,0). view(1,2).", frozenset())
+    for parts in ((), ("explain",)):
+        yield Query(("topomap", *parts), "#defined slots/1. view(0,0).", frozenset())
     for experience in (EXPERIENCES | WORLDS).values():
         yield from hypotheses(experience.facts(), (), Truth(experience))
     for seed, most, after in DRAWN:
@@ -527,6 +531,11 @@ BENT = {
     "a gateway opposite an end": Experience(
         4, [[0, 1, 2], [0, 1], [0, 2], [0, 2, 3]], [2, 1, 2], straight=[[(1, 2)], [], [], [(0, 3)]]
     ),
+    # Three paths meet at the first place, and end there.
+    "three ends": replace(
+        seen("0 1 2", "0: 0", "0: 0 1 2", "1: 0", "0: 0 1 3", "1: 0", "0: 0 2 3"),
+        straight=[[]] * 7,
+    ),
     "paths that bend": Experience(
         6,
         [[0, 1, 3], [0, 2], [0, 2], [0, 3, 4], [0, 2], [0, 1]],
@@ -587,10 +596,17 @@ def about(experience: Experience, truth: Truth) -> Iterator[Query]:
     told = tuple(str(under / name) for name in ("topomap", *stated))
     how = constants(experience)
     found = frozenset(((), ats(at)) for at in truth.final)
-    for files, text in (("topomap",), turned), (told, turned), (told, turned + facts):
-        yield Query(files, text, found, how)
+    # The gateways that end their path may be told, too.
+    ends = "".join(
+        f"straight({t},{s},{s}). "
+        for t, (view, pairs) in enumerate(zip(experience.views, experience.straight, strict=False))
+        for s in view - {slot for pair in pairs for slot in pair}
+    )
+    for text in (turned, turned + ends, turned + facts):
+        yield Query(("topomap",), text, found, how)
+        yield Query(told, text, found, how)
     sided = frozenset(((), ats(at)) for at in truth.having("boundary"))
-    yield Query(("topomap", "boundary"), turned, sided, how)
+    yield Query(("topomap", "boundary"), turned + ends, sided, how)
     horizon = experience.steps // 2
     cut = frozenset(((), ats(at)) for at in truth.levels[horizon])
     how = (*how, "-c", f"horizon={horizon}")
@@ -1157,10 +1173,11 @@ def sizes() -> list[Query]:
     large = experience.facts() + "phases. " + pairs + known
     plane = Query(("phases/topomap", "planar"), large, frozenset())
     more = []
-    known = KNOWN["odometry, a gap"], KNOWN["length"], KNOWN["same"], KNOWN["apart"]
+    kinds = "odometry, a gap", "length", "same", "apart", "compass"
+    known = [KNOWN[name] for name in kinds]
     several = [LOGS[name] for name in ("a look with odometry", "three dead ends", "coin and rope")]
-    bent_ = BENT["one slot off"], BENT["paths that bend"]
-    for told in (*known, *several, *bent_, EXPERIENCES["marker"]):
+    off = BENT["one slot off"], replace(ROUND, tolerance=1)
+    for told in (*known, *several, *off, BENT["paths that bend"], EXPERIENCES["marker"]):
         how = constants(told)
         cut = (*how, "-c", "horizon=1")
         less = told.cut(min(2, told.steps)).facts()
