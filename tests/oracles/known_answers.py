@@ -522,6 +522,10 @@ BENT = {
     "one not, and one opposite": Experience(8, [[0, 5], [0], [0, 4]], [0, 0], tolerance=1),
     "opposite, as given": replace(ROUND, straight=[[]] * 6),
     "all opposite": replace(EXPERIENCES["ahead"], straight=[[], [(0, 2)], BOTH]),
+    "perhaps a circle": replace(EXPERIENCES["ahead"], straight=[BOTH, [(0, 2)], BOTH]),
+    "perhaps a circle, not exactly": replace(
+        EXPERIENCES["ahead"], straight=[BOTH, [(0, 2)], BOTH], tolerance=1
+    ),
     "round a corner": replace(EXPERIENCES["square"], straight=[*[[(0, 3)]] * 4, [(0, 1)]]),
     "round once more": replace(
         EXPERIENCES["round"], straight=[*[[(0, 3)]] * 4, [(0, 1)], [(0, 3)]]
@@ -607,6 +611,9 @@ def about(experience: Experience, truth: Truth) -> Iterator[Query]:
         yield Query(told, text, found, how)
     sided = frozenset(((), ats(at)) for at in truth.having("boundary"))
     yield Query(("topomap", "boundary"), turned + ends, sided, how)
+    best = truth.least(Hypothesis.cost, truth.final)
+    best = frozenset((truth.final[at].cost(), ats(at)) for at in best)
+    yield Query(("topomap", "minimal"), turned + ends, best, (*how, "--opt-mode=optN"))
     horizon = experience.steps // 2
     cut = frozenset(((), ats(at)) for at in truth.levels[horizon])
     how = (*how, "-c", f"horizon={horizon}")
@@ -1010,6 +1017,12 @@ def given_up() -> Iterator[Query]:
     names = "corners", "mirrored", "ahead", "branch", "loop", "lost", "added"
     for name, parts in [*((name, ()) for name in names), ("corners", ("closed",))]:
         yield from waived(EXPERIENCES[name].cut(3), parts)
+    # Where a view is given up, a path may lead on by a gateway that was not seen.
+    facts = (
+        f"{seen('0 1', '0: 0 1', '1: 0').facts()} :- waived(R), R != view(2,0). :- not at(2,0,3)."
+    )
+    found = shown("at(0,0,0)", "at(1,1,0)", "at(2,0,3)", "waived(view(2,0))")
+    yield Query(("topomap", "explain", "travelled"), facts, found, ("--opt-mode=ignore",))
     # If nothing may be given up, the maps of each part are left.
     for name in ("lens", "corners", "triangle"):
         experience = EXPERIENCES[name].cut(6)
@@ -1173,11 +1186,12 @@ def sizes() -> list[Query]:
     large = experience.facts() + "phases. " + pairs + known
     plane = Query(("phases/topomap", "planar"), large, frozenset())
     more = []
-    kinds = "odometry, a gap", "length", "same", "apart", "compass"
+    kinds = "odometry, a gap", "length, just not", "same", "apart", "compass"
     known = [KNOWN[name] for name in kinds]
     several = [LOGS[name] for name in ("a look with odometry", "three dead ends", "coin and rope")]
-    off = BENT["one slot off"], replace(ROUND, tolerance=1)
-    for told in (*known, *several, *off, BENT["paths that bend"], EXPERIENCES["marker"]):
+    off = BENT["one slot off"], replace(ROUND, tolerance=1), replace(THERE, tolerance=1)
+    statement = "ask(path(0,0,1,0)). ask(number(exception,0)). ask(number(path,0))."
+    for told in (*known, *several, *off, BENT["paths that bend"], EXPERIENCES["lens"]):
         how = constants(told)
         cut = (*how, "-c", "horizon=1")
         less = told.cut(min(2, told.steps)).facts()
@@ -1185,6 +1199,8 @@ def sizes() -> list[Query]:
         more += [Query(files, told.facts(), frozenset(), (*many, *cut))]
         more += [Query((*files, "no_path_axiom"), told.facts(), frozenset(), (*many, *how))]
         more += [Query(waived, less, frozenset(), how)]
+        for facts in told.facts(), told.facts() + statement:
+            more += [Query(("topomap", "query"), facts, frozenset(), how)]
     told = EXPERIENCES["stages"]
     more += judged(told, next(enumerated(sorted(Truth(told).final))), DEMANDS)
     return [plane, *whole, *phases[::40], *[*following()][::20], *more]
@@ -1341,6 +1357,27 @@ def asked() -> Iterator[Query]:
         if len(truth.final) < 100:
             yield from _asked(draw, experience, truth, "no_path_axiom")
     yield from statements(CORRIDOR, Truth(CORRIDOR), {})
+    # Each by itself, as another one may ground what it needs.
+    draws = [random_experience(random.Random(f"biting {seed}"), 14) for seed in BITING[::3]]
+    draws += [EXPERIENCES[name] for name in ("lens", "fork", "ahead", "loop", "star")]
+    for experience in draws:
+        for more in (), ("no_path_axiom",):
+            truth = Truth(experience, axiom=not more)
+            if len(truth.final) < 100:
+                yield from single(experience, truth, *more)
+
+
+def single(experience: Experience, truth: Truth, *more: str) -> Iterator[Query]:
+    """Each quality, and each figure compared with its least and its greatest number."""
+    for name, test in QUALITIES.items():
+        yield from statements(experience, truth, {name: test}, *more)
+    for name, figure in FIGURES.items():
+        numbers = sorted({figure(h) for h in truth.final.values()})
+        for number in {*numbers[:1], *numbers[-1:]}:
+            for how, compare in COMPARED.items():
+                term = f"{how}({NAMED.get(name, name)},{number})"
+                tests = {term: partial(_compared, figure, compare, number)}
+                yield from statements(experience, truth, tests, *more)
 
 
 def _asked(
