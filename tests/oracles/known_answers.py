@@ -146,6 +146,38 @@ EXPERIENCES = {
     ),
     # The path along the row ends twice where a run of several steps does.
     "both ends of a row": of_grid(2, 5, "grid", (0, 2, 1), "EESWWNWW"),
+    # Some place would be on both sides of a path, if two that look alike were one: of a path of two
+    # runs that share one link; of a path of two runs that share a place; where a walk leaves a path
+    # against two steps of a run; where it goes on along another run; and so against the first.
+    "sides of two runs": walked(
+        *(4, "a1 e3 e1 z3 z2 t0 t3 s1 s0 e2 a3 b1 b0 o2 o0 w2 o1 v3 t1 u3", "a1"),
+        "1 1 2 3 0 3 3 0",
+    ),
+    "sides of two pieces": walked(
+        4, "t0 p2 p1 q3 q2 d0 q1 r3 r0 o2 t1 u3 o1 v3", "t0", "0 1 2 0 1 0"
+    ),
+    "sides two steps away": walked(4, "t0 m2 m0 p2 p1 q3 q0 o2 t1 u3 o1 v3", "t0", "0 0 1 0"),
+    "sides by another run": walked(
+        4, "q0 o2 q3 p1 p2 m0 m1 d3 m2 k0 o1 u3 k1 v3", "q0", "0 2 3 2 1 3 2"
+    ),
+    "sides against a run": walked(
+        *(4, "a1 e3 e1 z3 z2 y0 y1 o3 y3 s1 s0 e2 a3 b1 o2 u0 b2 v0", "a1"),
+        "1 1 2 1 3 3 0 3 3",
+    ),
+    # Two paths meet twice, one of them, or both, in two pieces; and a triangle of paths in pieces.
+    "lens of a path in pieces": walked(4, "p1 q3 q2 d0 q1 r3 r0 o0 o2 p0", "p1", "1 2 0 1 0 2"),
+    "lens in pieces": walked(4, "p1 q3 q2 d0 q1 r3 r0 o0 o1 f3 o2 p0", "p1", "1 2 0 1 0 1 3 2"),
+    "triangle in pieces": walked(
+        *(4, "p1 a3 a2 d0 a1 q3 q2 b0 b1 e3 b2 r0 r3 c1 c2 f0 c3 p2", "p1"),
+        "1 2 0 1 2 1 3 2 3 2 0 3",
+    ),
+    # The ends of a path are seen where long runs begin.
+    "long runs at both ends": walked(
+        4,
+        "m1 p3 p1 q3 q1 x3 q2 r0 r2 s0 s3 t1 t0 m2 m3 k1 k3 l1 l3 w1 l2 g0 g2 h0",
+        "m1",
+        "1 1 2 2 3 0 3 3 2 2",
+    ),
     "star": seen("0 1 2", "0: 0", "0: 0 1 2", "1: 0", "0: 0 1 5", "1: 0", "0: 0 4 5", slots=6),
 }
 
@@ -316,8 +348,10 @@ def theory() -> Iterator[Query]:
     yield Query(("topomap",), "slots(4). view(0,0). turn(1,0). view(1,2).", frozenset())
     for parts in ((), ("explain",)):
         yield Query(("topomap", *parts), "#defined slots/1. view(0,0).", frozenset())
-    for experience in (EXPERIENCES | WORLDS).values():
+    for name, experience in (EXPERIENCES | WORLDS).items():
         yield from hypotheses(experience.facts(), (), Truth(experience))
+        if name.startswith("sides"):
+            yield from exceptional(experience, Truth(experience))
     for seed, most, after in DRAWN:
         experience = random_experience(random.Random(f"corpus {seed}"), most)
         horizon = max(0, experience.steps - after)
@@ -491,6 +525,8 @@ BENT = {
     "a pair less, not exactly": Experience(
         4, [[0, 1, 2], [0], [0, 1, 2]], [0, 0], straight=[[(0, 1)], [], []], tolerance=1
     ),
+    # The one gateway is right of the other at the first visit, and left of it at the second one.
+    "right or left": Experience(12, [[0, 5], [0], [0, 5], [0]], [5, 0, 5], tolerance=2),
     # Each is within the tolerance of the first visit, and the two are twice that apart.
     "off to both sides": Experience(
         12, [[0, 4], [0], [0, 3], [0], [0, 5]], [0, 0, 0, 0], tolerance=1
