@@ -69,6 +69,8 @@ EXPERIENCES = {
     "marker": replace(CORNERS, drops=FIRST, markers=LAST),
     "no marker": replace(CORNERS, drops=FIRST),
     "taken": replace(CORNERS, drops=FIRST, picks=LAST),
+    # The marker is put down, taken up at the same place, and not seen there any more.
+    "taken back": replace(seen("0", "0: 0", "0: 0", "0: 0", "0: 0"), drops=FIRST, picks=LAST),
     # No step arrives where it left.
     "marker at once": replace(seen("0 1", "0: 0 3"), drops=FIRST, markers=frozenset([1])),
     "mirrored": seen("0 1", "0: 0 1", "1: 0 1"),
@@ -386,8 +388,7 @@ def knowledge() -> Iterator[Query]:
         explained = f"{facts} :- waived(_)."
         yield Query(("topomap", "explain"), explained, answers, (*how, "--opt-mode=ignore"))
         if experience.same or experience.apart:
-            turned = re.sub(r"(same|apart)\((\d+),(\d+)\)", r"\1(\3,\2)", facts)
-            yield Query(("topomap",), turned, answers, how)
+            yield Query(("topomap",), turned(experience), answers, how)
         if len(truth.final) < 100:
             tests = {"planar": PROPERTIES["planar"], "closed": PROPERTIES["closed"]}
             tests |= {
@@ -411,10 +412,16 @@ def knowledge() -> Iterator[Query]:
         for horizon in range(experience.steps):
             found = frozenset(((), ats(at)) for at in truth.levels[horizon])
             how = (*constants(experience), "-c", f"horizon={horizon}")
-            yield Query(("topomap",), experience.facts(), found, how)
+            for facts in dict.fromkeys((experience.facts(), turned(experience))):
+                yield Query(("topomap",), facts, found, how)
             planar = Truth(experience.cut(horizon)).having("planar")
             found = frozenset(((), ats(at)) for at in planar)
             yield Query(("topomap", "planar"), experience.facts(), found, how)
+
+
+def turned(experience: Experience) -> str:
+    """Its facts, with the visits known to be of one place, or of two, the other way round."""
+    return re.sub(r"(same|apart)\((\d+),(\d+)\)", r"\1(\3,\2)", experience.facts())
 
 
 # Each of what is known besides views, where it holds and where it bites, at its border.
@@ -531,6 +538,9 @@ BENT = {
     "off to both sides": Experience(
         12, [[0, 4], [0], [0, 3], [0], [0, 5]], [0, 0, 0, 0], tolerance=1
     ),
+    "off to both sides, the other way": Experience(
+        12, [[0, 4], [0], [0, 5], [0], [0, 3]], [0, 0, 0, 0], tolerance=1
+    ),
     "off too far": Experience(12, [[0, 4], [0], [0, 6]], [0, 0], tolerance=1),
     "the last slot": Experience(4, [[0, 1], [0], [0, 3]], [0, 0], tolerance=2),
     "a turn of a slot off": Experience(
@@ -544,6 +554,20 @@ BENT = {
     ),
     "a compass round the circle": Experience(
         12, [[0, 4], [0], [0, 4], [0], [0, 4]], [0] * 4, compass=[0, None, 11, None, 1], tolerance=1
+    ),
+    "a compass round the circle, the other way": Experience(
+        12, [[0, 4], [0], [0, 4], [0], [0, 4]], [0] * 4, compass=[0, None, 1, None, 11], tolerance=1
+    ),
+    # The bearing is one slot off, and the compass one slot more.
+    "a compass one off, and a slot": Experience(
+        *(12, [[0, 4], [0], [0, 5], [0], [0, 8]], [0, 0, 5, 0]),
+        compass=[None, None, 3, None, 6],
+        tolerance=1,
+    ),
+    "a compass one off, and a slot, the other way": Experience(
+        *(12, [[0, 4], [0], [0, 3], [0], [0, 8]], [0, 0, 3, 0]),
+        compass=[None, None, 3, None, 8],
+        tolerance=1,
     ),
     "a compass two off, from high slots": Experience(
         *(12, [[0, 11], [0], [0, 1], [0], [0, 11]], [11, 0, 1, 0]),
@@ -630,7 +654,7 @@ def bearings() -> Iterator[Query]:
 def about(experience: Experience, truth: Truth) -> Iterator[Query]:
     """The same pairs of gateways in the other order, or in both; and a part of the experience."""
     facts = experience.facts()
-    turned = re.sub(r"straight\((\d+),(\d+),(\d+)\)", r"straight(\1,\3,\2)", facts)
+    swapped = re.sub(r"straight\((\d+),(\d+),(\d+)\)", r"straight(\1,\3,\2)", facts)
     under = FORMS["paper"].relative_to(ENCODINGS)
     stated = [*beyond(facts), *["beyond/tolerance"] * bool(experience.tolerance)]
     told = tuple(str(under / name) for name in ("topomap", *stated))
@@ -642,14 +666,14 @@ def about(experience: Experience, truth: Truth) -> Iterator[Query]:
         for t, (view, pairs) in enumerate(zip(experience.views, experience.straight, strict=False))
         for s in view - {slot for pair in pairs for slot in pair}
     )
-    for text in (turned, turned + ends, turned + facts):
+    for text in (swapped, swapped + ends, swapped + facts):
         yield Query(("topomap",), text, found, how)
         yield Query(told, text, found, how)
     sided = frozenset(((), ats(at)) for at in truth.having("boundary"))
-    yield Query(("topomap", "boundary"), turned + ends, sided, how)
+    yield Query(("topomap", "boundary"), swapped + ends, sided, how)
     best = truth.least(Hypothesis.cost, truth.final)
     best = frozenset((truth.final[at].cost(), ats(at)) for at in best)
-    yield Query(("topomap", "minimal"), turned + ends, best, (*how, "--opt-mode=optN"))
+    yield Query(("topomap", "minimal"), swapped + ends, best, (*how, "--opt-mode=optN"))
     horizon = experience.steps // 2
     cut = frozenset(((), ats(at)) for at in truth.levels[horizon])
     how = (*how, "-c", f"horizon={horizon}")
@@ -755,10 +779,15 @@ def off_or_bent() -> Iterator[Query]:
     is not defined what a path is; so nothing but views is then broken, or no view is."""
     # The way back ends where two gateways are seen, and was one. (All else breaks more than that.)
     back = Experience(4, [[0], [0, 2], [0, 1]], [0, 0], tolerance=1)
+    # No visit is of a place that a later one names.
+    on = Experience(4, [[0, 2], [0]], [0], tolerance=1)
+    facts = f"{on.facts()} :- waived(R), R != view(0,1)."
+    found = shown("at(0,0,0)", "at(1,1,0)")
+    yield Query(("topomap", "explain"), facts, found, (*constants(on), "--opt-mode=ignore"))
     for part in ("planar", "boundary", "no_path_axiom"):
         found = shown("at(0,0,0)", "at(1,1,0)", "at(2,0,0)", "waived(view(2,0))")
         how = (*constants(back), "--opt-mode=ignore")
-        facts = f"{back.facts()} :- waived(R), R != view(2,0)."
+        facts = f"{back.facts()} :- waived(R), R != view(2,0), R != view(0,2)."
         yield Query(("topomap", "explain", part), facts, found, how)
     for told in ({"apart": [(0, 2)]}, {"shifts": [(9, 0), (9, 0)]}, {"lengths": [100, 50]}):
         inexact = Experience(4, [[0], [0], [0]], [0, 0], tolerance=1, **told)
@@ -1235,8 +1264,10 @@ def sizes() -> list[Query]:
         more += [Query(files, told.facts(), frozenset(), (*many, *cut))]
         more += [Query((*files, "no_path_axiom"), told.facts(), frozenset(), (*many, *how))]
         more += [Query(waived, less, frozenset(), how)]
-        for facts in told.facts(), told.facts() + statement:
+        more += [Query(files, turned(told), frozenset(), (*many, *cut))]
+        for facts in turned(told), told.facts() + statement:
             more += [Query(("topomap", "query"), facts, frozenset(), how)]
+        more += [Query(("topomap", "query", "no_path_axiom"), told.facts(), frozenset(), how)]
     told = EXPERIENCES["stages"]
     more += judged(told, next(enumerated(sorted(Truth(told).final))), DEMANDS)
     return [plane, *whole, *phases[::40], *[*following()][::20], *more]
@@ -1262,11 +1293,13 @@ def borders() -> Iterator[Query]:
     """Maps of what is seen, where more is known: what the checker says of them."""
     wide = ("-c", f"tolerance={LARGEST}")
     for experience in BENT.values():
-        if experience.tolerance and not experience.compass:
+        if experience.tolerance:
             any_bearings = replace(experience, tolerance=experience.slots)
             found = frozenset(((), ats(at)) for at in Truth(any_bearings).final)
             facts = experience.facts()
-            for files in (("topomap",), ("paper/topomap", "paper/beyond/tolerance")):
+            told = *beyond(facts), "beyond/tolerance"
+            paper = tuple(f"paper/{name}" for name in ("topomap", *told))
+            for files in (("topomap",), paper):
                 if "straight" not in facts:
                     yield Query(files, facts, found, wide)
             maps = [*enumerated(Truth(any_bearings).final), [(0, 0, 0), (1, 1, 0), (2, 2, 0)]]
@@ -1277,12 +1310,12 @@ def borders() -> Iterator[Query]:
         less = replace(experience, compass=(), shifts=(), lengths=(), same=(), apart=(), things=())
         less = replace(less, straight=(), tolerance=2 * less.tolerance)
         found = sorted(Truth(less).final)
-        turned = re.sub(r"(same|apart)\((\d+),(\d+)\)", r"\1(\3,\2)", experience.facts())
+        facts = experience.facts()
         some = random.Random(experience.facts()).sample(found, min(12, len(found)))
         for told in enumerated(some):
             for query in judged(experience, told, ()):
                 yield query
-                yield replace(query, facts=query.facts.replace(experience.facts(), turned))
+                yield replace(query, facts=query.facts.replace(facts, turned(experience)))
 
 
 # Two gateways that are a slot apart, seen a slot off: the one is where the other is expected.
@@ -1680,17 +1713,13 @@ def proved(facts: str, among: list[Standing], carried: bool, pairs: list | None)
     return Query(("bisimilar",), facts, shown(*atoms))
 
 
-# The marker is put down, taken up at the same place, and not seen there any more.
-TAKEN_BACK = replace(seen("0", "0: 0", "0: 0", "0: 0", "0: 0"), drops=FIRST, picks=LAST)
-
-
 def following() -> Iterator[Query]:
     """Experiences step by step: all hypotheses, the planar ones, those of few places, what
     they cost, the best closed ones, and which visits are of one place. Steps that lead
     elsewhere are taken back."""
     draws = [random_experience(random.Random(f"following {seed}"), 9) for seed in range(40)]
     draws += [random_experience(random.Random(f"marked {seed}"), 9, True) for seed in range(24)]
-    draws += [TAKEN_BACK, TAKEN_BACK, *KNOWN.values(), *LOGS.values()]
+    draws += [EXPERIENCES["taken back"]]
     # Of several logs it is not followed what is planar.
     head, *steps = TWO.facts().splitlines()
     yield Query(("online",), f"online. {head}", frozenset(), (), tuple(steps), ("step", "planar"))
@@ -1708,6 +1737,9 @@ def following() -> Iterator[Query]:
     draws += [logs(random.Random(f"following logs {seed}"), 5) for seed in range(20)]
     for number, experience in enumerate([*(EXPERIENCES | WORLDS).values(), *draws]):
         yield from followed(number, experience)
+    for experience in [*KNOWN.values(), *LOGS.values()]:  # all that may be asked of them
+        for number in range(6):
+            yield from followed(number, experience)
 
 
 def following_bent() -> Iterator[Query]:
