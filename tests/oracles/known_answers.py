@@ -453,6 +453,7 @@ KNOWN = {
     "length, round": replace(ROUND, lengths=(100, 50, 40, 30, 100)),
     "length, unlike": replace(ROUND, lengths=(100, 50, 40, 30, 89)),
     "stretch": replace(THERE, lengths=(100, 89, None), stretch=11),
+    "stretch, just not": replace(THERE, lengths=(100, 88, None), stretch=11),
     "odometry, two gaps": replace(
         seen("0 2", *["0: 0 2"] * 4), shifts=((10, 0), None, None, (0, 0))
     ),
@@ -540,6 +541,34 @@ BENT = {
     ),
     "off to both sides, the other way": Experience(
         12, [[0, 4], [0], [0, 5], [0], [0, 3]], [0, 0, 0, 0], tolerance=1
+    ),
+    "a length that differs, not exactly": Experience(
+        4, [[0], [0], [0]], [0, 0], lengths=[100, 50], tolerance=1
+    ),
+    # Gateways that are a slot apart, and seen a slot off, where the paper's faces are walked.
+    "a slot apart": Experience(
+        12,
+        [
+            [0, 1, 8],
+            [0, 1, 8],
+            [0, 8, 11],
+            [0, 5, 11],
+            [0, 3, 5],
+            [0, 7, 10],
+            [0, 5, 11],
+            [0, 4, 5],
+        ],
+        [1, 0, 8, 0, 3, 7, 0],
+        tolerance=1,
+    ),
+    "a slot apart, once more": Experience(
+        12,
+        [
+            *([0, 3, 4, 11], [0, 6, 8, 10], [0, 7, 8, 11], [0, 1, 8, 9], [0, 8, 9, 11]),
+            *([0, 1, 8, 9], [0, 1, 8, 9], [0, 1, 4, 5]),
+        ],
+        [0, 8, 7, 9, 8, 8, 0],
+        tolerance=1,
     ),
     "off too far": Experience(12, [[0, 4], [0], [0, 6]], [0, 0], tolerance=1),
     "the last slot": Experience(4, [[0, 1], [0], [0, 3]], [0, 0], tolerance=2),
@@ -1917,6 +1946,11 @@ def alone() -> Iterator[Query]:
         for file in ("straight", "tolerance", "compass"):
             files = ("paper/topomap", f"paper/beyond/{file}")
             yield Query(files, EXPERIENCES[name].facts(), found)
+    truth = Truth(EXPERIENCES["ahead"])
+    best = truth.least(Hypothesis.cost, truth.final)
+    found = frozenset((truth.final[at].cost(), ats(at)) for at in best)
+    files = "paper/topomap", "paper/beyond/straight", "paper/minimal"
+    yield Query(files, EXPERIENCES["ahead"].facts(), found, ("--opt-mode=optN",))
     # It has a map, and that one is closed.
     back = seen("0", "0: 0", "0: 0")
     pairs = "".join(f"{atom}. " for atom in phase_answers.Pairs(back).shown())
