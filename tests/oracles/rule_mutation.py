@@ -153,17 +153,21 @@ def whole_program(files: Iterable[Sequence[str]]) -> str:
 
 
 def mutants(folder: Path, file: str) -> list[Mutant]:
-    """The mutants of an encoding; of those that read the same, one."""
+    """The mutants of an encoding; of those that read the same, one. If one change can be made at
+    several places of a statement, the later ones are numbered: (2) and so on."""
     found = {}
     for number, statement in enumerate(statements(folder, file)):
         if statement.ast_type in (ast.ASTType.Heuristic, ast.ASTType.Program):
             continue
         rule = str(statement)
         found[number, ""] = Mutant(file, rule, "remove", "remove", number, "")
+        made: Counter[str] = Counter()
         for kind, change, node in changes(statement):
             text = str(node)
-            if text != rule:
-                found.setdefault((number, text), Mutant(file, rule, change, kind, number, text))
+            if text != rule and (number, text) not in found:
+                made[change] += 1
+                name = f"{change} ({made[change]})" if made[change] > 1 else change
+                found[number, text] = Mutant(file, rule, name, kind, number, text)
     return list(found.values())
 
 

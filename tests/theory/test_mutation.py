@@ -60,6 +60,15 @@ MUTANTS = {
         "drop r(Y)": "#false :- p(X); X > 1; not q(X,Y).",
         "r(Y) -> not r(Y)": "#false :- p(X); X > 1; not q(X,Y): not r(Y).",
     },
+    "#false :- p(X); q(X): p(X).": {
+        "remove": "",
+        "drop p(X)": "#false :- q(X): p(X).",
+        "p(X) -> not p(X)": "#false :- not p(X); q(X): p(X).",
+        "drop q(X): p(X)": "#false :- p(X).",
+        "q(X) -> not q(X)": "#false :- p(X); not q(X): p(X).",
+        "drop p(X) (2)": "#false :- p(X); q(X).",
+        "p(X) -> not p(X) (2)": "#false :- p(X); q(X): not p(X).",
+    },
     "2 = { s(X): q(X,_) }.": {
         "remove": "",
         "= 2 -> = 3": "3 = { s(X): q(X,_) }.",
