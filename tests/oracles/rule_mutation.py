@@ -26,7 +26,7 @@ from functools import cache
 from itertools import groupby, product
 from pathlib import Path
 from types import MappingProxyType
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import clingo
 from clingo import ast
@@ -509,32 +509,40 @@ def fates(
 
 def marks(
     folder: Path, chosen: list[Mutant], asked: list[Query], measured: list[Query]
-) -> dict[Mutant, str]:
-    """For each mutant, what tells it, and all that it is tried with, from any other."""
+) -> Callable[[Mutant, str], str]:
+    """A function that gives a mark of a mutant and what settled it: of the mutant, and of the query
+    of this name with all that it loads, or else of all queries."""
     loaded = sets(folder, asked + measured)
-    of_file: dict[str, Any] = {}
+    texts = {
+        name: repr(list(map(str, statements(folder, name))))
+        for name in set().union(*loaded.values())
+    }
+    of_files = {
+        files: hashlib.sha256(repr((files, [texts[name] for name in every])).encode()).hexdigest()
+        for files, every in loaded.items()
+    }
+    names = [(name_of(query), query.files) for query in asked + measured]
+    asked_of = dict(names[: len(asked)])
+    settled = clingo.__version__, SECONDS, BYTES
+    of_file = {}
     for file in {mutant.file for mutant in chosen}:
-        told = []  # in any order, as queries of other files are mixed with these
-        for files, every in loaded.items():
-            if file in every:
-                texts = [list(map(str, statements(folder, name))) for name in every]
-                told.append(repr((files, texts)))
-        for query in asked + measured:
-            if file in loaded[query.files]:
-                told.append(name_of(query))
-        settled = clingo.__version__, SECONDS, BYTES
-        of_file[file] = hashlib.sha256(repr((settled, sorted(told))).encode())
-    found = {}
-    for mutant in chosen:
-        digest = of_file[mutant.file].copy()
-        digest.update(repr((mutant.file, mutant.number, mutant.text)).encode())
-        found[mutant] = digest.hexdigest()
-    return found
+        told = [of_files[files] for files, every in loaded.items() if file in every]
+        told += [name for name, files in names if file in loaded[files]]
+        of_file[file] = hashlib.sha256(repr(sorted(told)).encode()).hexdigest()
+
+    def mark(mutant: Mutant, query: str) -> str:
+        files = asked_of.get(query)
+        told = of_file[mutant.file] if files is None else of_files[files] + query
+        found = settled, told, mutant.file, mutant.number, mutant.text
+        return hashlib.sha256(repr(found).encode()).hexdigest()
+
+    return mark
 
 
 def going_on(
     path: Path,
-    mark: dict[Mutant, str],
+    chosen: list[Mutant],
+    mark: Callable[[Mutant, str], str],
     trials: Trials,
     most: int = QUERIES,
     minutes: float = math.inf,
@@ -545,7 +553,7 @@ def going_on(
     A line of the file has a digest of the rule and the change of a mutant, its mark, its fate
     and the query that settled it, or how many it was asked; the last line of a mutant counts. If
     its mark is another one by now, that query is asked first: as a rule it settles the mutant
-    again."""
+    again. A further query leaves the mark of what another one settled as it is."""
     known = {}
     if path.exists():
         for line in path.read_text().splitlines():
@@ -553,13 +561,13 @@ def going_on(
             known[key] = rest
     keys = {
         mutant: hashlib.sha256(repr((*mutant.key, mutant.text)).encode()).hexdigest()[:16]
-        for mutant in mark
+        for mutant in chosen
     }
     left, before = [], {}
     for mutant, key in keys.items():
         at, fate, query = known.get(key, ("", "", "-"))
         before[mutant] = query
-        if at == mark[mutant] and (fate != "survived" or int(query) >= most):
+        if at == mark(mutant, query) and (fate != "survived" or int(query) >= most):
             yield Tried(mutant, fate, query)
             continue
         left.append(mutant)
@@ -568,7 +576,8 @@ def going_on(
     untried = dict.fromkeys(left)
     with path.open("a") as file:
         for one in trials(left, before):
-            file.write(f"{keys[one.mutant]} {mark[one.mutant]} {one.fate} {one.query}\n")
+            line = keys[one.mutant], mark(one.mutant, one.query), one.fate, one.query
+            file.write(" ".join(line) + "\n")
             file.flush()
             del untried[one.mutant]
             yield one
@@ -710,7 +719,8 @@ def main(
         found = trials(chosen, {})
         if options.known:
             mark = marks(folder, chosen, asked(), measured())
-            found = going_on(options.known, mark, trials, options.queries, options.minutes)
+            how = mark, trials, options.queries, options.minutes
+            found = going_on(options.known, chosen, *how)
         ends = {one.mutant: one.fate for one in tqdm(found, "mutants", len(chosen), disable=None)}
         fate = {mutant: ends[mutant] for mutant in chosen}
         if not (options.files or options.sample):

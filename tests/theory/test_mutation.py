@@ -34,6 +34,7 @@ PORTIONS = 10  # of the mutants that are tried one after the other: each ends in
 RULES = """
 p(X) :- q(X,1), not r(X).
 :- p(X), X > 1, not q(X,Y) : r(Y).
+:- p(X), q(X) : p(X).
 { s(X) : q(X,_) } = 2.
 #minimize { 3@1,X : s(X) }.
 """
@@ -174,7 +175,9 @@ def test_the_query_that_settled_a_mutant_comes_first_the_next_time(mutated, tmp_
     settled = Counter(line.split()[-1] for line in known.read_text().splitlines())
     first, second = map(mutate.name_of, (ASKED[0], other))
     assert settled == {first: 9, "-": 1, str(mutate.QUERIES): 1}
-    known.write_text(known.read_text().replace(first, second, 1))
+    lines = known.read_text().replace(first, second, 1).splitlines()
+    stale = [" ".join([key, "stale", *rest]) for key, _, *rest in map(str.split, lines)]
+    known.write_text("\n".join([*stale, ""]))
     log, suffer = tmp_path / "log", mutate.suffer
 
     def note(programs, whole, asked):
@@ -186,6 +189,13 @@ def test_the_query_that_settled_a_mutant_comes_first_the_next_time(mutated, tmp_
     monkeypatch.setitem(globals(), "ASKED", [other, ASKED[0]])
     mutated(listing(EQUIVALENT), "--known", str(known))
     assert Counter(log.read_text().split()) == {first: 10, second: 1}
+    # A further query is only asked where no other one settled the mutant: of the survivor and of
+    # the endless one.
+    log.write_text("")
+    further = Query(("counter",), "m(5).", shown("n(0)", "n(1)"), ("-c", "limit=1"))
+    monkeypatch.setitem(globals(), "ASKED", [further, *ASKED])
+    mutated(listing(EQUIVALENT), "--known", str(known))
+    assert len(log.read_text().split()) == 2
 
 
 def test_what_settled_others_and_what_a_rule_is_about_take_turns():
@@ -255,8 +265,9 @@ from oracles import rule_mutation as mutate
 from oracles.known_answers import Query, shown
 folder = Path(sys.argv[1])
 asked = [Query(("counter", name), "", shown()) for name in "abcdef"]
-marks = mutate.marks(folder, mutate.mutants(folder, "counter"), asked, [])
-print(*marks.values())
+every = mutate.mutants(folder, "counter")
+mark = mutate.marks(folder, every, asked, [])
+print(*(mark(one, query) for one in every for query in (mutate.name_of(asked[0]), "100")))
 """
 
 
