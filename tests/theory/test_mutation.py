@@ -13,12 +13,15 @@ from conftest import ENCODINGS, ROOT
 from oracles import rule_mutation as mutate
 from oracles.known_answers import (
     Query,
+    biting,
     check,
     circumscription,
     demands,
     ends,
     faults,
     following,
+    given_up,
+    off_or_bent,
     phases,
     queries,
     shown,
@@ -27,7 +30,6 @@ from oracles.known_answers import (
     theory,
 )
 
-OPEN = ROOT / "tests/oracles/open.toml"  # mutants for which a query is known to be missing
 MANY = 1500  # queries for a mutant, where only some mutants are tried
 PORTIONS = 10  # of the mutants that are tried one after the other: each ends in minutes
 
@@ -373,7 +375,10 @@ def test_an_encoding_that_gives_a_wrong_answer_unchanged_is_refused(mutated, mon
         ends,
         demands,
         faults,
-        *(pytest.param(s, marks=pytest.mark.long) for s in (theory, phases, check, following)),
+        *(
+            pytest.param(suite, marks=pytest.mark.long)
+            for suite in (theory, phases, check, following, biting, given_up, off_or_bent)
+        ),
     ],
 )
 def test_the_encodings_answer_right(suite):
@@ -391,9 +396,8 @@ def test_the_encodings_answer_right(suite):
 @pytest.mark.long
 @pytest.mark.parametrize("portion", range(PORTIONS))
 def test_no_statement_can_be_removed(portion):
-    """Each, except for the listed ones, is missed by some query; and those for which a query is
-    still missing are known one by one."""
-    reasons = mutate.listed(mutate.LISTED) | mutate.listed(OPEN)
+    """Each, except for the listed ones, is missed by some query."""
+    reasons = mutate.listed(mutate.LISTED)
     chosen = [
         mutant
         for file in mutate.named_files(ENCODINGS)
@@ -407,20 +411,6 @@ def test_no_statement_can_be_removed(portion):
 
 
 @pytest.mark.long
-@pytest.mark.parametrize("key", sorted(mutate.listed(OPEN)))
-def test_what_is_open_survives(key):
-    """Each entry is a mutant, and still survives: else it is to go from the list."""
-    assert key not in mutate.listed(mutate.LISTED)
-    (mutant,) = [one for one in mutate.mutants(ENCODINGS, key[0]) if one.key == key]
-    every = len(queries())
-    ((_, fate, _),) = mutate.fates(ENCODINGS, [mutant], queries(), sizes(), 1, most=every)
-    assert fate == "survived"
-
-
-@pytest.mark.long
-def test_a_sample_is_killed(capsys, tmp_path):
-    listed = tmp_path / "listed.toml"
-    listed.write_text(f"{mutate.LISTED.read_text()}\n{OPEN.read_text()}")
-    sample = ["--sample", "100", "--seed", "sample", "--queries", str(MANY)]
-    status = mutate.main([*sample, "--listed", str(listed)])
+def test_a_sample_is_killed(capsys):
+    status = mutate.main(["--sample", "100", "--seed", "sample", "--queries", str(MANY)])
     assert status == 0, capsys.readouterr().out
