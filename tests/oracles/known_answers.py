@@ -173,6 +173,11 @@ EXPERIENCES = {
         *(4, "p1 a3 a2 d0 a1 q3 q2 b0 b1 e3 b2 r0 r3 c1 c2 f0 c3 p2", "p1"),
         "1 2 0 1 2 1 3 2 3 2 0 3",
     ),
+    # A path would be a circle: of two runs with one heading, or with opposite ones.
+    "a circle in pieces": walked(4, "p1 q3 q1 r3 r2 d0 r1 s3 s1 p3", "p1", "1 1 2 0 1 1"),
+    "a circle from both sides": walked(
+        4, "p1 q3 q1 r3 r2 x0 x2 p2 p3 s1 s3 r1", "p1", "1 1 2 2 3 3"
+    ),
     # The ends of a path are seen where long runs begin.
     "long runs at both ends": walked(
         4,
