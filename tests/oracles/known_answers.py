@@ -1765,8 +1765,8 @@ def following() -> Iterator[Query]:
         "after(2,0). turn(2,0). view(2,0).",
     )
     head, *steps = back
-    found = shown("at(0,0,0)", "at(2,2,0)")
-    yield Query(("online",), f"online. {head}", found, (), tuple(steps), ("step", "planar"))
+    found, how = shown("at(0,0,0)", "at(2,2,0)"), ("--opt-mode=ignore",)
+    yield Query(("online",), f"online. {head}", found, how, tuple(steps), ("step", "planar"))
     draws += [informed(random.Random(f"following known {seed}"), 6) for seed in range(20)]
     draws += [logs(random.Random(f"following logs {seed}"), 5) for seed in range(20)]
     for number, experience in enumerate([*(EXPERIENCES | WORLDS).values(), *draws]):
