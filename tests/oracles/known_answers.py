@@ -1765,7 +1765,7 @@ def following() -> Iterator[Query]:
         "after(2,0). turn(2,0). view(2,0).",
     )
     head, *steps = back
-    found, how = shown("at(0,0,0)", "at(2,2,0)"), ("--opt-mode=ignore",)
+    found, how = shown("at(0,0,0)", "at(2,2,0)"), ("--project", "--opt-mode=ignore")
     yield Query(("online",), f"online. {head}", found, how, tuple(steps), ("step", "planar"))
     draws += [informed(random.Random(f"following known {seed}"), 6) for seed in range(20)]
     draws += [logs(random.Random(f"following logs {seed}"), 5) for seed in range(20)]
