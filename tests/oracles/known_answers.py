@@ -1771,7 +1771,10 @@ def following() -> Iterator[Query]:
     draws += [logs(random.Random(f"following logs {seed}"), 5) for seed in range(20)]
     for number, experience in enumerate([*(EXPERIENCES | WORLDS).values(), *draws]):
         yield from followed(number, experience)
-    for experience in [*KNOWN.values(), *LOGS.values()]:  # all that may be asked of them
+    # All that may be asked of what is told besides views, and of what was made for one rule.
+    made = "three pieces", "the middle first", "the middle last", "a circle in pieces"
+    made += "a circle from both sides", "taken back", "marker", "no marker", "taken", "triangle"
+    for experience in [*KNOWN.values(), *LOGS.values(), *(EXPERIENCES[name] for name in made)]:
         for number in range(6):
             yield from followed(number, experience)
 
