@@ -62,8 +62,8 @@ clingo has an error or a message for it, *endless* when a query takes more than 
 the processor or {memory} MiB of memory. (If the encoding without the change gives other answers
 too, the run ends with an error.) When these answers are right, a mutant of an encoding whose worth
 is in its size, too, is *larger* if it grounds to more rules at the first of {sizes} queries at
-which the number is another one: some of the named experiences with all the parts, and some of what
-`phases/` and `online/` are asked. Another one is *equivalent* if
+which the number is another one: some of the named experiences with all the parts, some with what is
+told besides views, and some of what `phases/`, `online/` and the checker are asked. Another one is *equivalent* if
 `tests/oracles/equivalent.toml` says why, and else it has *survived*: another query may kill it, or
 a proof is missing. It is *untried* if there was no time. Comments, `#include` and `#heuristic`,
 which is but an order of the search, are not mutated.
