@@ -63,10 +63,10 @@ the processor or {memory} MiB of memory. (If the encoding without the change giv
 too, the run ends with an error.) When these answers are right, a mutant of an encoding whose worth
 is in its size, too, is *larger* if it grounds to more rules at the first of {sizes} queries at
 which the number is another one: some of the named experiences with all the parts, some with what is
-told besides views, and some of what `phases/`, `online/` and the checker are asked. Another one is *equivalent* if
-`tests/oracles/equivalent.toml` says why, and else it has *survived*: another query may kill it, or
-a proof is missing. It is *untried* if there was no time. Comments, `#include` and `#heuristic`,
-which is but an order of the search, are not mutated.
+told besides views, and some of what `phases/`, `online/` and the checker are asked.
+Another one is *equivalent* if `tests/oracles/equivalent.toml` says why, and else it has *survived*:
+another query may kill it, or a proof is missing. It is *untried* if there was no time. Comments,
+`#include` and `#heuristic`, which is but an order of the search, are not mutated.
 """
 COMPLEMENT = {
     ast.ComparisonOperator.Equal: ast.ComparisonOperator.NotEqual,
