@@ -67,7 +67,7 @@ CASES = {
         (LARGE, "--minimal", *QUICK),
     ],
     "ask": [
-        (LARGE, "planar", "same(3,12)", *QUICK),
+        (LARGE, "planar", "same(3,12)", *AT_ONCE),
         (LARGE, "not planar", "places < 20", "--optimal", *QUICK),
     ],
     "explain": [(LARGE, "places > 20", "--closed", *AT_ONCE), (SNAKE, "same(3,12)", *AT_ONCE)],
