@@ -73,7 +73,7 @@ CASES = {
     "explain": [(LARGE, "places > 20", "--closed", *AT_ONCE), (SNAKE, "same(3,12)", *AT_ONCE)],
     "explore": [
         (LARGE, *QUICK),
-        (LARGE, "--among", "closed", "--among", "perpendicular", *AT_ONCE),
+        (SNAKE, "--among", "closed", "--among", "perpendicular", *AT_ONCE),
         (SNAKE, "--among", "{four}", "--steps", "1"),
     ],
     "follow": [(GRID, "--no-wait", *AT_ONCE)],
