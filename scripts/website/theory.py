@@ -11,6 +11,7 @@ PAPER = ROOT / "encodings/paper"
 # The files in the order in which the paper has what they say, each with a heading.
 ORDER = {
     "topomap": "Places, views and links",
+    "told": "What is told",
     "path_axiom": "The path axiom",
     "paths": "Paths",
     "planar": "Planarity",

@@ -43,7 +43,7 @@ INCLUDED = (
     "paper/path_axiom",
     "paper/paths",
     "paper/sides",
-    "paper/beyond/told",
+    "paper/told",
 )
 EVERY_PART = [
     file
