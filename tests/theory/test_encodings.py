@@ -172,12 +172,12 @@ AGGREGATES = {
     "paper/beyond/straight": [
         "1 > #sum { 1: paper, not along(_,_,_,_); with_sides: along(_,_,_,_) }",
         "N = #min { R: R = S; R: pair(P,S,R) }",
-        "1 = #count { 1: pair(T,S,R); 2: pair(P,X,Y) }",
+        "1 = #count { here: pair(T,S,R); there: pair(P,X,Y) }",
     ],
     "paper/beyond/tolerance": [
         "N = #count { R: view(T,R), R < S }",
         "M = #count { R: view(T,R) }",
-        "1 = #count { 1: opposite(T,S,R); 2: opposite(P,X,Y) }",
+        "1 = #count { here: opposite(T,S,R); there: opposite(P,X,Y) }",
     ],
     "theory/experience": [
         "I = #count { R: view(T,R), R < S }",
