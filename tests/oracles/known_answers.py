@@ -549,6 +549,10 @@ BENT = {
     "off to both sides, the other way": Experience(
         12, [[0, 4], [0], [0, 5], [0], [0, 3]], [0, 0, 0, 0], tolerance=1
     ),
+    # The visits are from two gateways, and the bearing of each is in the difference of a third one.
+    "off three times": Experience(
+        36, [[0, 10, 20], [0], [0, 11, 25], [0], [0, 17, 27]], [10, 0, 11, 0], tolerance=1
+    ),
     "a length that differs, not exactly": Experience(
         4, [[0], [0], [0]], [0, 0], lengths=[100, 50], tolerance=1
     ),
@@ -662,6 +666,7 @@ def bearings() -> Iterator[Query]:
     drawn += [
         replace(logs(random.Random(f"logs off {seed}"), 6), tolerance=1) for seed in range(12)
     ]
+    drawn += [wavering(random.Random(f"wavering {seed}")) for seed in range(40)]
     for experience in [*BENT.values(), *cases, *drawn]:
         truth = Truth(experience)
         if len(truth.final) < 60:
@@ -685,6 +690,25 @@ def bearings() -> Iterator[Query]:
             yield from exceptional(experience, truth, "no_path_axiom")
             draw = random.Random(experience.facts())
             yield from _asked(draw, experience, truth, "no_path_axiom")
+
+
+def wavering(draw: random.Random) -> Experience:
+    """A junction that is left by some of its gateways, for dead ends, and seen again from each of
+    these gateways: each bearing is as far off as it may be to one side, or to the other, or exact."""
+    slots, off = draw.choice([(24, 1), (36, 2), (60, 3)])
+    ways = draw.randint(3, 4)
+    star = [way * slots // ways + draw.randint(-2, 2) for way in range(ways)]
+    at, seen_from = 0, {way: (star[way] - star[0]) % slots for way in range(ways)}
+    views, turns = [[*seen_from.values()]], []
+    for _ in range(draw.choice([2, 2, 3])):
+        at = draw.randrange(ways)
+        turns += [seen_from[at], 0]
+        wrong = [draw.choice([-off, 0, off]) for _ in star]
+        seen_from = {way: (star[way] - star[at] + wrong[way]) % slots for way in range(ways)}
+        seen_from[at] = 0
+        views += [[0], [*seen_from.values()]]
+    told = draw.choice([(), [[] for _ in views]])  # that no two are opposite need not be seen
+    return Experience(slots, views, turns, tolerance=off, straight=told)
 
 
 def about(experience: Experience, truth: Truth) -> Iterator[Query]:

@@ -151,7 +151,7 @@ AGGREGATES = {
         "{ against(t) }",
     ],
     "online/places": ["1 = { at(t,P,S): candidate(P,t,S) }"],
-    "paper/bound": ["1 > #sum { (places+1): paper; -1,P: place(P) }"],
+    "paper/bound": ["0 > #sum { (places+0): paper; -1: not paper; -1,P: place(P) }"],
     "paper/topomap": ["1 = { at(T,P,S): alike(T,P,S) }"],
     "paper/told": [
         "0 < #sum { 1,marker: drop(_); -with_marker,marker: drop(_); "
@@ -175,7 +175,7 @@ AGGREGATES = {
         "1 = #count { here: pair(T,S,R); there: pair(P,X,Y) }",
     ],
     "paper/beyond/tolerance": [
-        "N = #count { R: view(T,R), R < S }",
+        "I = #count { R: view(T,R), R < S }",
         "M = #count { R: view(T,R) }",
         "1 = #count { here: opposite(T,S,R); there: opposite(P,X,Y) }",
     ],
