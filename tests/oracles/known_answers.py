@@ -694,7 +694,7 @@ def bearings() -> Iterator[Query]:
 
 def wavering(draw: random.Random) -> Experience:
     """A junction that is left by some of its gateways, for dead ends, and seen again from each of
-    these gateways: each bearing is as far off as it may be to one side, or to the other, or exact."""
+    these: every bearing is as far off as it may be to one side, or to the other, or exact."""
     slots, off = draw.choice([(24, 1), (36, 2), (60, 3)])
     ways = draw.randint(3, 4)
     star = [way * slots // ways + draw.randint(-2, 2) for way in range(ways)]
@@ -1969,8 +1969,9 @@ def alone() -> Iterator[Query]:
         facts, how = f"{told.facts()} #const with_{file} = 0.", constants(told)
         yield Query(("paper/topomap",), facts, frozenset(), how)
         # Nor does one file stand for another, of facts that say nothing.
-        other, fact = ("compass", "compass(0,0)") if file == "closures" else ("closures", "same(0,0)")
-        facts = f"{told.facts()} {fact}. #const with_{other} = 0."
+        other = "compass" if file == "closures" else "closures"
+        fact = "compass(0,0)." if file == "closures" else "same(0,0)."
+        facts = f"{told.facts()} {fact} #const with_{other} = 0."
         yield Query(("paper/topomap", f"paper/beyond/{file}"), facts, frozenset(), how)
     sides = f"{BENT['all opposite'].facts()} #const with_sides = 0."
     for part in ("paper/boundary", "paper/beyond/exceptions"):
