@@ -9,7 +9,7 @@ import topomap
 from answers.test_knowledge import ahead, followed, searched, small
 from conftest import ENCODINGS, PARTS, ROOT, TRIED, Truth, answers, forms
 from oracles.brute_force import Hypothesis, tree
-from oracles.worlds import bent, told
+from oracles.worlds import bent, told, wavering
 from topomap.model.experience import Experience
 from topomap.model.facts import parse
 from topomap.runtime.errors import InputError
@@ -106,6 +106,13 @@ def test_many_random_worlds(block):
             agree_without_axiom(free)
         left_out += not small(seen, MOST)
     assert left_out < 20
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_a_junction_seen_from_its_gateways(seed):
+    """Each bearing is as far off as it may be; two visits from different gateways, both later than
+    the first one, may differ by three times as much."""
+    agree(wavering(random.Random(f"seen from its gateways {seed}")))
 
 
 DRIFT = ROOT / "tests/cases/drift.lp"

@@ -146,6 +146,25 @@ def bent(draw: random.Random, steps: int) -> Experience:
     )
 
 
+def wavering(draw: random.Random) -> Experience:
+    """A junction that is left by some of its gateways, for dead ends, and seen again from each of
+    these: every bearing is as far off as it may be to one side, or to the other, or exact."""
+    slots, off = draw.choice([(24, 1), (36, 2), (60, 3)])
+    ways = draw.randint(3, 4)
+    star = [way * slots // ways + draw.randint(-2, 2) for way in range(ways)]
+    at, seen_from = 0, {way: (star[way] - star[0]) % slots for way in range(ways)}
+    views, turns = [[*seen_from.values()]], []
+    for _ in range(draw.choice([2, 2, 3])):
+        at = draw.randrange(ways)
+        turns += [seen_from[at], 0]
+        wrong = [draw.choice([-off, 0, off]) for _ in star]
+        seen_from = {way: (star[way] - star[at] + wrong[way]) % slots for way in range(ways)}
+        seen_from[at] = 0
+        views += [[0], [*seen_from.values()]]
+    told = draw.choice([(), [[] for _ in views]])  # that no two are opposite need not be seen
+    return Experience(slots, views, turns, tolerance=off, straight=told)
+
+
 def logs(draw: random.Random, steps: int) -> Experience:
     """Several logs of one world, with second looks, markers with names, and now and then a compass,
     odometry and lengths."""
