@@ -45,7 +45,7 @@ UNTRIED = "untried"  # as there was no time
 FATES = ("survived", "killed", "refused", "endless", "larger", UNTRIED)
 SECONDS = 5  # of the processor, for one query: the encodings take milliseconds
 BYTES = 2 << 30
-QUERIES = 100  # for one mutant at most: that many settle nearly all that any query settles
+QUERIES = 100  # for a listed mutant at most: that many settle nearly all that any query settles
 HEAD = """# Rule mutation
 
 Written by `make mutate`, with clingo {clingo} and Python {python}.
@@ -64,9 +64,10 @@ too, the run ends with an error.) When these answers are right, a mutant of an e
 is in its size, too, is *larger* if it grounds to more rules at the first of {sizes} queries at
 which the number is another one: some of the named experiences with all the parts, some with what is
 told besides views, and some of what `phases/`, `online/` and the checker are asked.
-Another one is *equivalent* if `tests/oracles/equivalent.toml` says why, and else it has *survived*:
-another query may kill it, or a proof is missing. It is *untried* if there was no time. Comments,
-`#include` and `#heuristic`, which is but an order of the search, are not mutated.
+Another one is *equivalent* if `tests/oracles/equivalent.toml` says why. If this file does not list
+it, it is asked all queries that load it. If none of them kills it, it has *survived*: a query or a
+proof is missing. It is *untried* if there was no time. Comments, `#include` and `#heuristic`, which
+is but an order of the search, are not mutated.
 """
 COMPLEMENT = {
     ast.ComparisonOperator.Equal: ast.ComparisonOperator.NotEqual,
@@ -422,7 +423,8 @@ def fates(
 ) -> Iterator[Tried]:
     """The fate of each mutant, as they come, each in a process of its own; the ``proved`` ones come
     last, as none of them should be settled. ``before`` has the name of the query that settled a
-    mutant once. A mutant that survives ``most`` queries, and is not larger, has survived."""
+    mutant once. A mutant that survives ``most`` queries, and is not larger, has survived if it is
+    one of the ``proved`` ones, and else is asked all the others."""
     loaded = sets(folder, asked + measured)
     order = Order(asked, before)
     names = set().union(*loaded.values())
@@ -479,6 +481,8 @@ def fates(
                             fate = "larger" if first > 0 else fate
                         except (MemoryError, RuntimeError):  # clingo is out of memory
                             fate = "endless"
+                    if fate == "survived" and mutant.key not in proved:
+                        fate, number = suffer(mutated, whole, [asked[place] for place in mine])
                     settled = order.names[mine[number]] if number >= 0 else str(most)
                     os.write(told, f"{fate or 'wrong'} {settled}".encode())
                     code = 0
@@ -544,6 +548,7 @@ def going_on(
     chosen: list[Mutant],
     mark: Callable[[Mutant, str], str],
     trials: Trials,
+    proved: Container[Key] = (),
     most: int = QUERIES,
     minutes: float = math.inf,
 ) -> Iterator[Tried]:
@@ -553,7 +558,8 @@ def going_on(
     A line of the file has a digest of the rule and the change of a mutant, its mark, its fate
     and the query that settled it, or how many it was asked; the last line of a mutant counts. If
     its mark is another one by now, that query is asked first: as a rule it settles the mutant
-    again. A further query leaves the mark of what another one settled as it is."""
+    again. A further query leaves the mark of what another one settled as it is. A survivor that is
+    none of the ``proved`` ones is tried again."""
     known = {}
     if path.exists():
         for line in path.read_text().splitlines():
@@ -567,7 +573,8 @@ def going_on(
     for mutant, key in keys.items():
         at, fate, query = known.get(key, ("", "", "-"))
         before[mutant] = query
-        if at == mark(mutant, query) and (fate != "survived" or int(query) >= most):
+        enough = fate != "survived" or (mutant.key in proved and int(query) >= most)
+        if at == mark(mutant, query) and enough:
             yield Tried(mutant, fate, query)
             continue
         left.append(mutant)
@@ -685,7 +692,8 @@ def main(
         metavar="N",
         type=count,
         default=QUERIES,
-        help="ask each mutant at most N queries (default: %(default)s)",
+        help="ask a listed mutant at most N queries, and any other so many before its size is taken "
+        "(default: %(default)s)",
     )
     parser.add_argument(
         "--minutes",
@@ -719,7 +727,7 @@ def main(
         found = trials(chosen, {})
         if options.known:
             mark = marks(folder, chosen, asked(), measured())
-            how = mark, trials, options.queries, options.minutes
+            how = mark, trials, reasons, options.queries, options.minutes
             found = going_on(options.known, chosen, *how)
         ends = {one.mutant: one.fate for one in tqdm(found, "mutants", len(chosen), disable=None)}
         fate = {mutant: ends[mutant] for mutant in chosen}

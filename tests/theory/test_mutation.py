@@ -216,24 +216,36 @@ def test_what_settled_others_and_what_a_rule_is_about_take_turns():
     assert sorted(order.of(mutant, loading, among)) == [*loading]
 
 
-def test_a_survivor_is_asked_more_as_soon_as_it_may_be(mutated, tmp_path, monkeypatch):
+def test_a_listed_survivor_is_asked_more_as_soon_as_it_may_be(mutated, tmp_path, monkeypatch):
     """And not before."""
     more = Query(("counter",), "m(5).", shown("n(0)", "n(1)"), ("-c", "limit=1"))
     monkeypatch.setitem(globals(), "ASKED", [*ASKED, more])
     known = tmp_path / "known.txt"
     few = ("--queries", "1", "--known", str(known))
-    status, out, _, report = mutated("equivalent = []", *few)
-    assert (status, out.splitlines()[1:]) == (
-        1,
-        ["survives, not listed: counter | #show n/1. | remove"],
-    )
+    status, *_, report = mutated(listing(EQUIVALENT), *few)
+    assert status == 0
     assert "at most 1 of the\n2 queries" in report
-    mutated("equivalent = []", *few)
+    mutated(listing(EQUIVALENT), *few)
     assert len(known.read_text().splitlines()) == 11
-    assert mutated("equivalent = []", "--known", str(known))[0] == 0
+    status, out, *_ = mutated(listing(EQUIVALENT), "--known", str(known))
+    wrong = ["listed, but killed: counter | #show n/1. | remove"]
+    assert (status, out.splitlines()[1:]) == (1, wrong)
     lines = known.read_text().splitlines()
     assert len(lines) == 12
     assert lines[-1].split()[2:] == ["killed", mutate.name_of(more)]
+
+
+def test_a_survivor_that_is_not_listed_is_asked_everything(mutated, tmp_path, monkeypatch):
+    """However few the others are asked; and again, as long as it survives."""
+    known = tmp_path / "known.txt"
+    few = ("--queries", "1", "--known", str(known))
+    for lines in 11, 12:
+        assert mutated("equivalent = []", *few)[0] == 1
+        assert len(known.read_text().splitlines()) == lines
+    more = Query(("counter",), "m(5).", shown("n(0)", "n(1)"), ("-c", "limit=1"))
+    monkeypatch.setitem(globals(), "ASKED", [*ASKED, more])
+    assert mutated("equivalent = []", *few)[0] == 0
+    assert mutated("equivalent = []", "--queries", "1")[0] == 0
 
 
 def test_minutes_need_a_file_for_what_was_tried(mutated, capsys):
