@@ -692,7 +692,7 @@ def main(
         metavar="N",
         type=count,
         default=QUERIES,
-        help="ask a listed mutant at most N queries, and any other so many before its size is taken "
+        help="ask a listed mutant at most N queries, and others so many before their size is taken "
         "(default: %(default)s)",
     )
     parser.add_argument(
