@@ -1284,7 +1284,8 @@ def sizes() -> list[Query]:
     """What the size of the encodings is taken by: every other named experience with all the parts,
     one in eight where rules may be waived, some of what is asked of the phases and step by step;
     first of all, a large exploration in which it is known which visits are new; and last, what is
-    told besides views, where the exploration is cut, without the path axiom, and of one part."""
+    told besides views, where the exploration is cut, without the path axiom, and of one part; and what
+    is asked of runs, of which few queries are large."""
     files = ("topomap", "bound", "query", *PARTS, "genus", "minimal")
     many = ("-c", "places=99")
     waived = ("topomap", "explain", "perpendicular")
@@ -1323,7 +1324,8 @@ def sizes() -> list[Query]:
     more += [Query(("topomap", "euler"), told.facts(), frozenset())]
     more += [Query(("topomap", "query"), told.facts() + " ask(boundary).", frozenset())]
     more += judged(told, next(enumerated(sorted(Truth(told).final))), DEMANDS)
-    return [plane, *whole, *phases[::40], *[*following()][::20], *more]
+    of_runs = [query for query in phases if query.files[0] == "phases/runs"]
+    return [plane, *whole, *phases[::40], *[*following()][::20], *more, *of_runs[::20]]
 
 
 def check() -> Iterator[Query]:
