@@ -1284,8 +1284,8 @@ def sizes() -> list[Query]:
     """What the size of the encodings is taken by: every other named experience with all the parts,
     one in eight where rules may be waived, some of what is asked of the phases and step by step;
     first of all, a large exploration in which it is known which visits are new; and last, what is
-    told besides views, where the exploration is cut, without the path axiom, and of one part; and what
-    is asked of runs, of which few queries are large."""
+    told besides views, where the exploration is cut, without the path axiom, of one part, and
+    what is asked of runs, of which few queries are large."""
     files = ("topomap", "bound", "query", *PARTS, "genus", "minimal")
     many = ("-c", "places=99")
     waived = ("topomap", "explain", "perpendicular")
