@@ -607,3 +607,33 @@ def test_a_time_limit_leaves_what_is_known(topomap, tmp_path):
 def test_the_same_input_gives_the_same_bytes(topomap):
     call = ["explain", "instances/grid-3x3-snake.lp", "same(0,6)", "--perpendicular", "--json"]
     assert topomap(*call).stdout == topomap(*call).stdout
+
+
+def told_with_a_tolerance(topomap, tmp_path, facts):
+    """The last line of what is said where bearings may be one slot off, and the answer as JSON."""
+    file = tmp_path / "back.lp"
+    file.write_text(facts)
+    call = ["explain", str(file), "--tolerance", "1"]
+    answer = json.loads(topomap(*call, "--json").stdout)
+    assert (answer["verdict"], answer["complete"]) == ("no map", True)
+    return topomap(*call).stdout.splitlines()[-1], answer
+
+
+def test_reasons_with_a_tolerance_where_all_views_are_of_one_size(topomap, tmp_path):
+    views = "view(0,0). view(0,1). view(1,0). view(1,1). view(2,0). view(2,2)."
+    facts = f"slots(4). turn(1,1). turn(2,0). {views}"
+    told, answer = told_with_a_tolerance(topomap, tmp_path, facts)
+    assert told.startswith("these 2 reasons are enough, ")
+    assert answer["minimal"]
+
+
+def test_reasons_with_a_tolerance_where_views_are_of_different_sizes(topomap, tmp_path):
+    """With another view there is a map that keeps the only reason, so it is not called enough."""
+    facts = "slots(4). view(0,0). view(0,1). turn(1,1). view(1,0). turn(2,0). view(2,0)."
+    told, answer = told_with_a_tolerance(topomap, tmp_path, facts)
+    assert told == "1 reason: enough, if all visits of a place see equally many gateways"
+    assert answer["minimal"] is None
+    assert [reason["reason"] for reason in answer["reasons"]] == ["unification(1,2)"]
+    other = tmp_path / "other.lp"
+    other.write_text(f"{facts} view(2,3).")
+    assert "0.0 1.0 0.1" in topomap("solve", str(other), "--tolerance", "1").stdout

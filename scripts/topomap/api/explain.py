@@ -84,7 +84,11 @@ class Explained(Reply):
 
     @property
     def minimal(self) -> bool:
-        """Whether it is verified that the reasons are enough, and that each of them is needed."""
+        """Whether it is verified that the reasons are enough, and that each of them is needed.
+
+        If bearings are not exact, and visits see different numbers of gateways, this is not so: the
+        reasons are then enough if all visits of a place see equally many gateways.
+        """
         return self.explanation.minimal
 
     @property

@@ -59,6 +59,7 @@ VERDICTS = {
 NOTHING = "there are maps, so there is nothing to explain"
 LATE = {"closed", "travelled"}  # demands that a map may meet only after a later step
 LASTING = ("same", "at")  # relations about which later steps tell nothing new
+AS_MANY = "if all visits of a place see equally many gateways"
 Goal = bool | None  # whether the statement is to hold; None if there is none
 
 
@@ -126,7 +127,8 @@ class Explanation:
     It has the verdict; the reasons for it in the first ``horizon`` steps, or what is ``in_the_way``
     of a closed map; or maps in which the statement holds and does not hold. ``gathered`` tells
     whether reasons are whole rules, or all that is known of one step; ``fewest`` tells whether it
-    is proved that no fewer of these suffice.
+    is proved that no fewer of these suffice. ``as_many`` tells whether it is proved only for maps
+    in which all visits of a place see equally many gateways that the reasons suffice.
     """
 
     verdict: str | None = None
@@ -135,6 +137,7 @@ class Explanation:
     minimal: bool = False
     gathered: bool = False
     fewest: bool = False
+    as_many: bool = False
     in_the_way: list[str] = field(default_factory=list)
     maps: dict[bool, tuple[DState, ...]] = field(default_factory=dict)
 
@@ -170,6 +173,10 @@ class Explanation:
 
     def _sum(self) -> str:
         many = len(self.reasons)
+        if self.as_many:
+            told = f"{many} {words.plural(many, 'reason')}" if many else "no reason is needed"
+            enough = ": enough" if many else ""
+            return f"{told}{enough}, {AS_MANY}" + "; some may not be needed" * (many > 1)
         if not self.minimal:
             enough = f"{many} {words.plural(many, 'reason')}: enough, but some may not be needed"
             return enough if many else "the reasons are not found yet"
@@ -341,7 +348,11 @@ class Explainer:
         forget()
         if not all(reason.at for reason in self.found.reasons):
             raise RuntimeError("the reasons were not verified")
-        self.found.minimal = True
+        # Where bearings are not exact, and a view is given up that has another number of gateways
+        # than the place, it is not defined which gateway is which.
+        inexact = experience.tolerance > 0
+        self.found.as_many = inexact and len({*map(len, experience.views)}) > 1
+        self.found.minimal = not self.found.as_many
 
     def _reason(
         self,
