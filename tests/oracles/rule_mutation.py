@@ -482,7 +482,9 @@ def fates(
                         except (MemoryError, RuntimeError):  # clingo is out of memory
                             fate = "endless"
                     if fate == "survived" and mutant.key not in proved:
-                        fate, number = suffer(mutated, whole, [asked[place] for place in mine])
+                        rest = [asked[place] for place in mine[most:]]
+                        fate, number = suffer(mutated, whole, rest)
+                        number += most if number >= 0 else 0
                     settled = order.names[mine[number]] if number >= 0 else str(most)
                     os.write(told, f"{fate or 'wrong'} {settled}".encode())
                     code = 0

@@ -152,7 +152,7 @@ def wavering(draw: random.Random) -> Experience:
     slots, off = draw.choice([(24, 1), (36, 2), (60, 3)])
     ways = draw.randint(3, 4)
     star = [way * slots // ways + draw.randint(-2, 2) for way in range(ways)]
-    at, seen_from = 0, {way: (star[way] - star[0]) % slots for way in range(ways)}
+    seen_from = {way: (star[way] - star[0]) % slots for way in range(ways)}
     views, turns = [[*seen_from.values()]], []
     for _ in range(draw.choice([2, 2, 3])):
         at = draw.randrange(ways)

@@ -245,6 +245,8 @@ def test_a_survivor_that_is_not_listed_is_asked_everything(mutated, tmp_path, mo
     more = Query(("counter",), "m(5).", shown("n(0)", "n(1)"), ("-c", "limit=1"))
     monkeypatch.setitem(globals(), "ASKED", [*ASKED, more])
     assert mutated("equivalent = []", *few)[0] == 0
+    killed = known.read_text().splitlines()[-1].split()[2:]
+    assert killed == ["killed", mutate.name_of(more)]
     assert mutated("equivalent = []", "--queries", "1")[0] == 0
 
 

@@ -127,19 +127,25 @@ class Explanation:
     It has the verdict; the reasons for it in the first ``horizon`` steps, or what is ``in_the_way``
     of a closed map; or maps in which the statement holds and does not hold. ``gathered`` tells
     whether reasons are whole rules, or all that is known of one step; ``fewest`` tells whether it
-    is proved that no fewer of these suffice. ``as_many`` tells whether it is proved only for maps
-    in which all visits of a place see equally many gateways that the reasons suffice.
+    is proved that no fewer of these suffice. ``verified`` tells whether it was checked that the
+    reasons suffice, and that each of them is needed; ``as_many``, whether this is proved only for
+    maps in which all visits of a place see equally many gateways.
     """
 
     verdict: str | None = None
     horizon: int | None = None
     reasons: list[Reason] = field(default_factory=list)
-    minimal: bool = False
+    verified: bool = False
     gathered: bool = False
     fewest: bool = False
     as_many: bool = False
     in_the_way: list[str] = field(default_factory=list)
     maps: dict[bool, tuple[DState, ...]] = field(default_factory=dict)
+
+    @property
+    def minimal(self) -> bool:
+        """Whether it is verified that the reasons suffice, whatever the map, and are all needed."""
+        return self.verified and not self.as_many
 
     def lines(
         self, experience: Experience, statement: Statement | None, fault: str | None
@@ -173,15 +179,17 @@ class Explanation:
 
     def _sum(self) -> str:
         many = len(self.reasons)
-        if self.as_many:
-            told = f"{many} {words.plural(many, 'reason')}" if many else "no reason is needed"
-            enough = ": enough" if many else ""
-            return f"{told}{enough}, {AS_MANY}" + "; some may not be needed" * (many > 1)
-        if not self.minimal:
-            enough = f"{many} {words.plural(many, 'reason')}: enough, but some may not be needed"
-            return enough if many else "the reasons are not found yet"
         if not many:
-            return "it is so whatever the map: no rule is needed"
+            condition = f", {AS_MANY}" * self.as_many
+            so = f"it is so whatever the map{condition}: no rule is needed"
+            return so if self.verified else "the reasons are not found yet"
+        if not self.minimal:
+            condition = f" {AS_MANY}" if self.as_many else ""
+            which = "some" if many > 1 else "it"
+            return (
+                f"{many} {words.plural(many, 'reason')}: enough{condition}, "
+                f"but {which} may not be needed"
+            )
         if many == 1:
             return "this one reason is enough"
         kinds = Counter(reason.rule for reason in self.reasons)
@@ -253,7 +261,7 @@ class Explainer:
             verdict = "open" if self.term is None else "impossible" if self.positive else "certain"
             self._conclude(verdict if cut is None else "no map", None, cut)
             if self.seen and cut is None:
-                answer.minimal = True
+                answer.verified = True
                 answer.horizon = self.first if self.lasting else self.experience.steps
             return
         cut = self._beginning(True)
@@ -325,6 +333,10 @@ class Explainer:
         steps, query = cut
         self.found.horizon = steps
         experience = self.experience.cut(steps)
+        # Where bearings are not exact, and a view is given up that has another number of gateways
+        # than the place, it is not defined which gateway is which.
+        inexact = experience.tolerance > 0
+        self.found.as_many = inexact and len({*map(len, experience.views)}) > 1
         parts = ("explain",) if goal is None else ("explain", "query")
         query = query.having(*parts)
         facts = self.fact * (goal is not None)
@@ -348,11 +360,7 @@ class Explainer:
         forget()
         if not all(reason.at for reason in self.found.reasons):
             raise RuntimeError("the reasons were not verified")
-        # Where bearings are not exact, and a view is given up that has another number of gateways
-        # than the place, it is not defined which gateway is which.
-        inexact = experience.tolerance > 0
-        self.found.as_many = inexact and len({*map(len, experience.views)}) > 1
-        self.found.minimal = not self.found.as_many
+        self.found.verified = True
 
     def _reason(
         self,
